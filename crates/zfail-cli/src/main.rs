@@ -1,0 +1,2 @@
+//! The program `zfail`.
+fn main() {}

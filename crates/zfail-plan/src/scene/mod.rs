@@ -1,0 +1,99 @@
+//! The scene as plain data: meshes, materials, instances, lights and cameras in world space.
+//!
+//! In: what a loader or a generator fills. Out: read-only input of topology, plan, renderer and oracle.
+
+mod bounds;
+mod light;
+mod material;
+mod mesh;
+
+pub use bounds::Bounds;
+pub use light::{Light, LightKind};
+pub use material::{AlphaMode, Filter, Image, Material, Texture, TextureRef, Wrap};
+pub use mesh::{Mesh, Primitive};
+
+use crate::view::Projection;
+use glam::{DAffine3, DVec3};
+
+/// A posed scene: one moment of it, everything in world space.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// Name for reports: the file's stem or the generator's name.
+    pub name: String,
+    /// Triangle meshes, each in its own object space.
+    pub meshes: Vec<Mesh>,
+    /// Materials, referred to by [`Primitive::material`].
+    pub materials: Vec<Material>,
+    /// Textures: an image and how it is sampled.
+    pub textures: Vec<Texture>,
+    /// Decoded images.
+    pub images: Vec<Image>,
+    /// Placed meshes, in depth-first order of the nodes that hold them.
+    pub instances: Vec<Instance>,
+    /// Lights, in depth-first order of the nodes that hold them.
+    pub lights: Vec<Light>,
+    /// Cameras, in depth-first order of the nodes that hold them.
+    pub cameras: Vec<Camera>,
+    /// Ambient radiance that reaches every surface, linear RGB.
+    pub ambient: [f32; 3],
+    /// Radiance of pixels that see no surface, linear RGB.
+    pub background: [f32; 3],
+    /// What the loader repaired, replaced or left out, for the user to read.
+    pub notices: Vec<String>,
+}
+
+/// A mesh placed in the world.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    /// The node's name, or an invented one.
+    pub name: String,
+    /// Index into [`Scene::meshes`].
+    pub mesh: usize,
+    /// Object to world; invertible (loaders bake flattened nodes into meshes of their own), may mirror.
+    pub world_from_object: DAffine3,
+    /// Whether its triangles block light (node extras `castShadow`, inherited).
+    pub casts_shadow: bool,
+}
+
+/// A camera placed in the world.
+#[derive(Clone, Debug)]
+pub struct Camera {
+    /// The camera's or the node's name.
+    pub name: String,
+    /// View to world: rotation and translation only; the camera looks along its -z axis, +y is up.
+    pub world_from_view: DAffine3,
+    /// Shape of the view volume.
+    pub projection: Projection,
+}
+
+impl Scene {
+    /// World-space bounds of the instances' vertices, including those that cast no shadow; empty for an empty scene.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        let mut bounds = Bounds::EMPTY;
+        for instance in &self.instances {
+            let object = self.meshes[instance.mesh].bounds();
+            for corner in object.corners() {
+                bounds.add(instance.world_from_object.transform_point3(corner));
+            }
+        }
+        bounds
+    }
+
+    /// Whether triangle `triangle` of mesh `mesh` blocks light at all: blended materials let it through.
+    #[must_use]
+    pub fn triangle_casts(&self, mesh: usize, triangle: usize) -> bool {
+        self.meshes[mesh]
+            .material_of(triangle)
+            .is_none_or(|m| self.materials[m].alpha != AlphaMode::Blend)
+    }
+}
+
+/// Vertices of triangle `t` of `mesh` in world space.
+#[must_use]
+pub fn world_triangle(mesh: &Mesh, world_from_object: &DAffine3, t: usize) -> [DVec3; 3] {
+    mesh.triangles[t].map(|v| {
+        let p = mesh.positions[v as usize];
+        world_from_object.transform_point3(DVec3::new(p[0].into(), p[1].into(), p[2].into()))
+    })
+}

@@ -1,0 +1,2 @@
+//! Host example.
+fn main() {}
