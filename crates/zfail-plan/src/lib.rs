@@ -8,7 +8,13 @@
 //! Conventions: right-handed, glTF axes (+y up, a camera looks along -z); metres; radians; transforms are named
 //! destination-from-source (`world_from_object`) and are `f64` until the last step before the GPU.
 
+pub mod casting;
+pub mod plan;
 pub mod scene;
+pub mod scissor;
+pub mod stack;
+pub mod topology;
 pub mod view;
+pub mod volume;
 
 pub use glam;

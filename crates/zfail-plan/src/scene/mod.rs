@@ -83,9 +83,7 @@ impl Scene {
     /// Whether triangle `triangle` of mesh `mesh` blocks light at all: blended materials let it through.
     #[must_use]
     pub fn triangle_casts(&self, mesh: usize, triangle: usize) -> bool {
-        self.meshes[mesh]
-            .material_of(triangle)
-            .is_none_or(|m| self.materials[m].alpha != AlphaMode::Blend)
+        self.meshes[mesh].material_of(triangle).is_none_or(|m| self.materials[m].alpha != AlphaMode::Blend)
     }
 }
 

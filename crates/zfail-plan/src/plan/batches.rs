@@ -1,0 +1,150 @@
+//! The division of a light's casting triangles into batches whose counts cannot wrap.
+//!
+//! In: weights of every pair of one light. Out: a batch number per triangle, or none where one batch will do.
+
+use super::pair::Pair;
+use super::{Counting, Frame};
+use crate::scene::{Bounds, LightKind};
+use crate::stack::{self, Cone};
+use glam::DAffine3;
+
+/// Layers a stencil of 8 bits can tell from zero, less a few for pixels on rounded silhouettes.
+const SINGLE: usize = 250;
+/// The same for 7 bits, when the eighth is the sticky one.
+const FOLDED: usize = 120;
+
+/// Remembers one light's division while nothing moves.
+#[derive(Debug, Default)]
+pub(super) struct Batching {
+    /// What the division was made for.
+    key: Vec<(u64, DAffine3)>,
+    light: Option<LightKind>,
+    divided: bool,
+}
+
+/// A casting triangle with its directions from the light.
+struct Item {
+    pair: usize,
+    triangle: usize,
+    distance: f64,
+}
+
+impl Batching {
+    /// Sets the batches of `pairs`, all of light `l`.
+    pub fn divide(&mut self, frame: &Frame<'_>, l: usize, pairs: &mut [Pair]) {
+        let casting = |pair: &Pair| pair.weights.iter().filter(|&&c| c != 0).count();
+        if frame.counting == Counting::Raw || pairs.iter().map(casting).sum::<usize>() <= SINGLE {
+            pairs.iter_mut().for_each(Pair::unite);
+            self.light = None;
+            return;
+        }
+        let kind = frame.lights[l].kind;
+        let placed = |pair: &Pair| {
+            let caster = &frame.casters[pair.caster];
+            (caster.mesh, caster.world_from_object)
+        };
+        if self.light == Some(kind) && self.key.iter().copied().eq(pairs.iter().map(placed)) {
+            if !self.divided {
+                pairs.iter_mut().for_each(Pair::unite);
+            }
+            return;
+        }
+        self.key.clear();
+        self.key.extend(pairs.iter().map(placed));
+        self.light = Some(kind);
+
+        let (items, cones, shape) = cones(frame, &kind, pairs);
+        self.divided = !stack::is_within(&cones, &shape, SINGLE);
+        if !self.divided {
+            pairs.iter_mut().for_each(Pair::unite);
+            return;
+        }
+        let mut batches = Vec::new();
+        halve(&items, &cones, &shape, &mut batches);
+        for pair in &mut *pairs {
+            let triangles = pair.weights.len();
+            pair.divide(|batch_of| {
+                batch_of.clear();
+                batch_of.resize(triangles, 0);
+            });
+        }
+        for (batch, range) in batches.into_iter().enumerate() {
+            for item in &items[range] {
+                // More batches than 16 bits would need 8 million stacked layers; the last one takes the rest.
+                pairs[item.pair].batch_of[item.triangle] = batch.min(usize::from(u16::MAX)) as u16;
+            }
+        }
+    }
+}
+
+/// All casting triangles of one light as cones, nearest caster first, nearest triangle first.
+fn cones(frame: &Frame<'_>, kind: &LightKind, pairs: &[Pair]) -> (Vec<Item>, Vec<Cone>, stack::Frame) {
+    let light = kind.homogeneous();
+    let mut bounds = Bounds::EMPTY;
+    for pair in pairs {
+        let caster = &frame.casters[pair.caster];
+        let object = caster.topology.bounds();
+        if !object.is_empty() {
+            let world = object.transformed(&caster.world_from_object);
+            bounds.add(world.min);
+            bounds.add(world.max);
+        }
+    }
+    let shape = stack::Frame::new(light, &bounds);
+    let mut items = Vec::new();
+    for (p, pair) in pairs.iter().enumerate() {
+        let caster = &frame.casters[pair.caster];
+        for triangle in (0..pair.weights.len()).filter(|&t| pair.weights[t] != 0) {
+            let corners = caster.topology.corners(triangle);
+            let center = caster.world_from_object.transform_point3((corners[0] + corners[1] + corners[2]) / 3.0);
+            let distance =
+                if light.w == 0.0 { -light.truncate().dot(center) } else { light.truncate().distance(center) };
+            items.push(Item { pair: p, triangle, distance });
+        }
+    }
+    let mut nearest = vec![f64::INFINITY; pairs.len()];
+    for item in &items {
+        nearest[item.pair] = nearest[item.pair].min(item.distance);
+    }
+    items.sort_by(|a, b| {
+        let pairs = nearest[a.pair].total_cmp(&nearest[b.pair]).then(a.pair.cmp(&b.pair));
+        pairs.then(a.distance.total_cmp(&b.distance))
+    });
+    let cones = items
+        .iter()
+        .map(|item| {
+            let caster = &frame.casters[pairs[item.pair].caster];
+            let corners = caster.topology.corners(item.triangle);
+            stack::cone(corners.map(|p| caster.world_from_object.transform_point3(p)), light, &shape)
+        })
+        .collect();
+    (items, cones, shape)
+}
+
+/// Halves the sequence of items until no ray crosses more than [`FOLDED`] of any run, between casters where possible.
+fn halve(items: &[Item], cones: &[Cone], shape: &stack::Frame, out: &mut Vec<std::ops::Range<usize>>) {
+    let mut stack = vec![0..items.len()];
+    while let Some(range) = stack.pop() {
+        if stack::is_within(&cones[range.clone()], shape, FOLDED) {
+            out.push(range);
+            continue;
+        }
+        let middle = usize::midpoint(range.start, range.end);
+        let border = |&i: &usize| items[i - 1].pair != items[i].pair;
+        let before = (range.start + 1..=middle).rev().find(border);
+        let after = (middle..range.end).find(border).filter(|&i| i > range.start);
+        let cut = match (before, after) {
+            (Some(b), Some(a)) => {
+                if middle - b <= a - middle {
+                    b
+                } else {
+                    a
+                }
+            }
+            (Some(i), None) | (None, Some(i)) => i,
+            (None, None) => middle,
+        };
+        stack.push(cut..range.end);
+        stack.push(range.start..cut);
+    }
+}

@@ -1,0 +1,102 @@
+//! Connected parts and how each may cast.
+//!
+//! In: the incidence. Out: one [`Part`] per edge-connected set of triangles, with the fact that decides its weights:
+//! whether it is the boundary of a simple solid.
+
+use super::{NONE, Topology, closed, embedded};
+use crate::scene::Bounds;
+use rayon::prelude::*;
+
+/// Triangles connected through edges.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// How many triangles.
+    pub triangles: u32,
+    /// What kind of surface it is.
+    pub shape: Shape,
+    /// Object-space bounds.
+    pub bounds: Bounds,
+}
+
+/// What a connected part is, as far as casting cares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// Every edge is traversed equally often in both directions, and no two triangles meet except along shared
+    /// vertices and edges: the winding number is 0 outside and `inside` within. One layer of weights is exact.
+    Solid {
+        /// +1 if the front faces look outward, -1 if inward (an inside-out mesh, or a room).
+        inside: i8,
+    },
+    /// Every edge is balanced, but the surface meets itself, so that the winding number may take any value.
+    SelfIntersecting,
+    /// Some edge is unbalanced: a border, a fin, or neighbours wound against each other.
+    Open,
+}
+
+/// Fills `part_of` and `parts`.
+pub(super) fn find(topology: &mut Topology) {
+    let mut roots: Vec<u32> = (0..topology.triangles.len() as u32).collect();
+    let mut used = vec![false; topology.triangles.len()];
+    for (_, incident) in topology.incidence() {
+        let mut first = None;
+        for (t, _) in incident.iter() {
+            used[t] = true;
+            let root = root_of(&mut roots, t as u32);
+            match first {
+                None => first = Some(root),
+                Some(other) if other < root => roots[root as usize] = other,
+                Some(other) => {
+                    roots[other as usize] = root;
+                    first = Some(root);
+                }
+            }
+        }
+    }
+
+    let mut members: Vec<Vec<u32>> = Vec::new();
+    for t in 0..used.len() {
+        if used[t] {
+            let root = root_of(&mut roots, t as u32) as usize;
+            // A root is its part's lowest triangle, so it is met first.
+            if root == t {
+                topology.part_of[t] = members.len() as u32;
+                members.push(Vec::new());
+            }
+            topology.part_of[t] = topology.part_of[root];
+            members[topology.part_of[t] as usize].push(t as u32);
+        }
+    }
+
+    let balanced = closed::balanced_parts(topology, members.len());
+    let topology_ref = &*topology;
+    let parts = members
+        .par_iter()
+        .zip(balanced)
+        .map(|(triangles, balanced)| {
+            let shape = if !balanced {
+                Shape::Open
+            } else if embedded::is_embedded(topology_ref, triangles) {
+                match closed::signed_volume(topology_ref, triangles) {
+                    v if v > 0.0 => Shape::Solid { inside: 1 },
+                    v if v < 0.0 => Shape::Solid { inside: -1 },
+                    _ => Shape::SelfIntersecting,
+                }
+            } else {
+                Shape::SelfIntersecting
+            };
+            let corners = triangles.iter().flat_map(|&t| topology_ref.corners(t as usize));
+            Part { triangles: triangles.len() as u32, shape, bounds: Bounds::of(corners) }
+        })
+        .collect();
+    topology.parts = parts;
+    debug_assert!(topology.part_of.iter().all(|&p| p == NONE || (p as usize) < topology.parts.len()));
+}
+
+/// Union-find with path halving.
+fn root_of(roots: &mut [u32], mut t: u32) -> u32 {
+    while roots[t as usize] != t {
+        roots[t as usize] = roots[roots[t as usize] as usize];
+        t = roots[t as usize];
+    }
+    t
+}

@@ -1,0 +1,34 @@
+//! What can go wrong, for the host to read.
+
+use zfail_plan::plan::PlanError;
+use zfail_plan::topology::TopologyError;
+
+/// Why a mesh was not accepted or a frame not prepared.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The mesh's data is invalid.
+    #[error(transparent)]
+    Topology(#[from] TopologyError),
+    /// The frame's data is invalid.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// A caster refers to a mesh that was removed or belongs to another [`crate::Shadows`].
+    #[error("caster {caster} refers to a mesh that is not registered")]
+    UnknownMesh {
+        /// Index of the caster in the frame.
+        caster: usize,
+    },
+    /// A buffer would exceed the device's limits.
+    #[error(
+        "{what} need {bytes} bytes, but this device allows {limit} in one buffer; request higher limits or split the scene"
+    )]
+    TooLarge {
+        /// Which buffer.
+        what: &'static str,
+        /// Its size.
+        bytes: u64,
+        /// The device's limit.
+        limit: u64,
+    },
+}

@@ -1,0 +1,212 @@
+//! The render pipelines of shadow determination: stencil operations and nothing else.
+//!
+//! In: the formats of the host's pass. Out: pipelines for volumes (both windings, plain and batched counting, with and
+//! without depth clamping) and for folding a batch's counts into the sticky bit.
+//!
+//! z-fail (Bilodeau & Songy 1999; Carmack 2000): where a face of the volume lies at or behind the visible surface, a
+//! front face decrements and a back face increments, wrapping, so that their order does not matter. Front and back are
+//! told apart in one draw (E&K 2002, section 4.1, "two-sided stencil testing").
+
+use wgpu::{
+    BindGroupLayout, ColorTargetState, ColorWrites, CompareFunction, DepthStencilState, Device, Features,
+    FragmentState, FrontFace, MultisampleState, PipelineCompilationOptions, PipelineLayoutDescriptor, PrimitiveState,
+    RenderPipeline, RenderPipelineDescriptor, ShaderModule, StencilFaceState, StencilOperation, StencilState,
+    TextureFormat, VertexState,
+};
+
+/// The formats of the pass into which shadows are encoded.
+#[derive(Clone, Copy, Debug)]
+pub struct Target<'a> {
+    /// Formats of the colour attachments; they are left untouched. Empty for a pass of its own.
+    pub colors: &'a [Option<TextureFormat>],
+    /// Format of the depth-stencil attachment.
+    pub depth_stencil: TextureFormat,
+    /// Samples per pixel.
+    pub samples: u32,
+}
+
+/// Stencil state for the host's illumination: passes where the light arrives. Use it with stencil reference 0.
+#[must_use]
+pub fn lit_stencil() -> StencilState {
+    let face = StencilFaceState { compare: CompareFunction::Equal, ..StencilFaceState::IGNORE };
+    StencilState { front: face, back: face, read_mask: 0xff, write_mask: 0 }
+}
+
+/// Marks samples as shadowed for good, whatever further batches count.
+pub(crate) const STICKY: u32 = 0x80;
+/// The bits in which a batch counts when there are several.
+const BATCH_MASK: u32 = 0x7f;
+
+/// Pipelines for one [`Target`].
+#[derive(Debug)]
+pub struct Pipelines {
+    /// Infinite far plane: nothing of a volume lies beyond it.
+    infinite: Set,
+    /// Finite far plane: depth is clamped.
+    clamped: Set,
+    pub(crate) fold: RenderPipeline,
+}
+
+/// Pipelines that differ in winding and counting.
+#[derive(Debug)]
+struct Set {
+    /// Sides and dark caps, by `[batched][clockwise]`.
+    extruded: [[RenderPipeline; 2]; 2],
+    /// Light caps, likewise; `None` if the same will do. They need the depth of the depth pass to the last bit, so a
+    /// fragment shader must not compute it.
+    light_cap: Option<[[RenderPipeline; 2]; 2]>,
+}
+
+/// What a draw needs of its pipeline.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Variant {
+    /// The view's far plane is not at infinity.
+    pub finite: bool,
+    /// Counts go to seven bits only.
+    pub batched: bool,
+    /// The outside of the geometry is wound clockwise.
+    pub clockwise: bool,
+}
+
+impl Pipelines {
+    pub(crate) fn new(device: &Device, layout: &BindGroupLayout, module: &ShaderModule, target: &Target<'_>) -> Self {
+        let maker = Maker { device, layout, module, target };
+        let plain = maker.set(&VolumeStages { vertex: "volume", fragment: None, unclipped: false });
+        let clamped = if device.features().contains(Features::DEPTH_CLIP_CONTROL) {
+            maker.set(&VolumeStages { vertex: "volume", fragment: None, unclipped: true })
+        } else {
+            let by_hand = maker.set(&VolumeStages {
+                vertex: "clamped_volume",
+                fragment: Some("clamped_depth"),
+                unclipped: false,
+            });
+            let caps = maker.set(&VolumeStages { vertex: "volume", fragment: None, unclipped: false });
+            Set { extruded: by_hand.extruded, light_cap: Some(caps.extruded) }
+        };
+        Self { infinite: plain, clamped, fold: maker.fold() }
+    }
+
+    /// The pipeline for sides and dark caps.
+    pub(crate) fn extruded(&self, v: Variant) -> &RenderPipeline {
+        &self.set(v).extruded[usize::from(v.batched)][usize::from(v.clockwise)]
+    }
+
+    /// The pipeline for light caps, and whether it differs from that for sides.
+    pub(crate) fn light_cap(&self, v: Variant) -> (&RenderPipeline, bool) {
+        match &self.set(v).light_cap {
+            Some(own) => (&own[usize::from(v.batched)][usize::from(v.clockwise)], true),
+            None => (self.extruded(v), false),
+        }
+    }
+
+    fn set(&self, v: Variant) -> &Set {
+        if v.finite { &self.clamped } else { &self.infinite }
+    }
+}
+
+struct VolumeStages {
+    vertex: &'static str,
+    fragment: Option<&'static str>,
+    unclipped: bool,
+}
+
+struct Maker<'a> {
+    device: &'a Device,
+    layout: &'a BindGroupLayout,
+    module: &'a ShaderModule,
+    target: &'a Target<'a>,
+}
+
+impl Maker<'_> {
+    fn set(&self, stages: &VolumeStages) -> Set {
+        let extruded = [false, true].map(|batched| {
+            [FrontFace::Ccw, FrontFace::Cw].map(|front_face| {
+                let decrement = count(StencilOperation::DecrementWrap);
+                let increment = count(StencilOperation::IncrementWrap);
+                let stencil = StencilState {
+                    front: decrement,
+                    back: increment,
+                    read_mask: 0,
+                    write_mask: if batched { BATCH_MASK } else { 0xff },
+                };
+                let primitive =
+                    PrimitiveState { front_face, unclipped_depth: stages.unclipped, ..PrimitiveState::default() };
+                self.pipeline(stages.vertex, stages.fragment, primitive, CompareFunction::Greater, stencil)
+            })
+        });
+        Set { extruded, light_cap: None }
+    }
+
+    /// Where a batch left a count, sets the sticky bit and clears the count.
+    fn fold(&self) -> RenderPipeline {
+        let face = StencilFaceState {
+            compare: CompareFunction::NotEqual,
+            pass_op: StencilOperation::Replace,
+            ..StencilFaceState::IGNORE
+        };
+        let stencil = StencilState { front: face, back: face, read_mask: BATCH_MASK, write_mask: 0xff };
+        self.pipeline("image", None, PrimitiveState::default(), CompareFunction::Always, stencil)
+    }
+
+    fn pipeline(
+        &self,
+        vertex: &str,
+        fragment: Option<&str>,
+        primitive: PrimitiveState,
+        depth_compare: CompareFunction,
+        stencil: StencilState,
+    ) -> RenderPipeline {
+        let layout = self.device.create_pipeline_layout(&PipelineLayoutDescriptor {
+            label: Some("shadow volume"),
+            bind_group_layouts: &[Some(self.layout)],
+            immediate_size: 0,
+        });
+        let untouched: Vec<Option<ColorTargetState>> = self
+            .target
+            .colors
+            .iter()
+            .map(|format| {
+                format.map(|format| ColorTargetState { format, blend: None, write_mask: ColorWrites::empty() })
+            })
+            .collect();
+        // A pass with colour attachments wants a fragment stage that names them.
+        let fragment = fragment.or((!untouched.is_empty()).then_some("nothing"));
+        self.device.create_render_pipeline(&RenderPipelineDescriptor {
+            label: Some("shadow volume"),
+            layout: Some(&layout),
+            vertex: VertexState {
+                module: self.module,
+                entry_point: Some(vertex),
+                compilation_options: PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive,
+            depth_stencil: Some(DepthStencilState {
+                format: self.target.depth_stencil,
+                depth_write_enabled: Some(false),
+                depth_compare: Some(depth_compare),
+                stencil,
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            multisample: MultisampleState { count: self.target.samples, ..MultisampleState::default() },
+            fragment: fragment.map(|entry| FragmentState {
+                module: self.module,
+                entry_point: Some(entry),
+                compilation_options: PipelineCompilationOptions::default(),
+                targets: &untouched,
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}
+
+/// Counts fragments that fail the depth test: those at or behind the visible surface, for the test is strict.
+const fn count(operation: StencilOperation) -> StencilFaceState {
+    StencilFaceState {
+        compare: CompareFunction::Always,
+        fail_op: StencilOperation::Keep,
+        depth_fail_op: operation,
+        pass_op: StencilOperation::Keep,
+    }
+}
