@@ -39,7 +39,9 @@ impl Default for Setup {
 
 /// A device with what the set-up asks for, or `None` (with a printed reason) where there is no adapter.
 pub fn device(setup: &Setup) -> Option<(wgpu::Device, wgpu::Queue)> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY);
+    let instance = wgpu::Instance::new(descriptor);
     let options = wgpu::RequestAdapterOptions::default();
     let Ok(adapter) = pollster::block_on(instance.request_adapter(&options)) else {
         println!("skipped: no graphics adapter found");
