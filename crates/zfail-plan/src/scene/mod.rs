@@ -70,11 +70,13 @@ impl Scene {
     /// World-space bounds of the instances' vertices, including those that cast no shadow; empty for an empty scene.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
+        let of_mesh: Vec<Bounds> = self.meshes.iter().map(Mesh::bounds).collect();
         let mut bounds = Bounds::EMPTY;
         for instance in &self.instances {
-            let object = self.meshes[instance.mesh].bounds();
-            for corner in object.corners() {
-                bounds.add(instance.world_from_object.transform_point3(corner));
+            let world = of_mesh[instance.mesh].transformed(&instance.world_from_object);
+            if !world.is_empty() {
+                bounds.add(world.min);
+                bounds.add(world.max);
             }
         }
         bounds

@@ -45,8 +45,8 @@ impl Topology {
             return Some(0);
         }
         let mut half_angle = 0.0;
-        for (t, _) in self.part_of.iter().enumerate().filter(|&(_, &p)| p as usize == part) {
-            let [a, b, c] = self.corners(t).map(|p| p - point);
+        for &t in self.triangles_of(part) {
+            let [a, b, c] = self.corners(t as usize).map(|p| p - point);
             let (la, lb, lc) = (a.length(), b.length(), c.length());
             let volume = a.dot(b.cross(c));
             let scale = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;

@@ -81,6 +81,8 @@ pub struct Topology {
     pub part_of: Vec<u32>,
     /// Parts connected through edges.
     pub parts: Vec<Part>,
+    /// Casting triangles, part by part.
+    pub by_part: Vec<u32>,
     edges: Vec<Edge>,
     fans: Vec<Fan>,
     fan_triangles: Vec<u32>,
@@ -121,6 +123,7 @@ impl Topology {
             positions,
             triangles,
             parts: Vec::new(),
+            by_part: Vec::new(),
             edges: Vec::with_capacity(uses.len() / 2),
             fans: Vec::new(),
             fan_triangles: Vec::new(),
@@ -180,6 +183,16 @@ impl Topology {
         self.triangles[t].map(|v| self.position(v))
     }
 
+    /// The triangles of part `part`.
+    ///
+    /// # Panics
+    /// If there is no such part.
+    #[must_use]
+    pub fn triangles_of(&self, part: usize) -> &[u32] {
+        let range = &self.parts[part].triangles;
+        &self.by_part[range.start as usize..range.end as usize]
+    }
+
     /// Object-space bounds of the casting parts.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
@@ -201,6 +214,7 @@ impl Topology {
             + size_of_val(&*self.triangles)
             + size_of_val(&*self.part_of)
             + size_of_val(&*self.parts)
+            + size_of_val(&*self.by_part)
             + size_of_val(&*self.edges)
             + size_of_val(&*self.fans)
             + size_of_val(&*self.fan_triangles)

@@ -6,12 +6,13 @@
 use super::{NONE, Topology, closed, embedded};
 use crate::scene::Bounds;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Triangles connected through edges.
 #[derive(Clone, Debug)]
 pub struct Part {
-    /// How many triangles.
-    pub triangles: u32,
+    /// Its triangles, as a range of [`Topology::by_part`].
+    pub triangles: Range<u32>,
     /// What kind of surface it is.
     pub shape: Shape,
     /// Object-space bounds.
@@ -68,11 +69,22 @@ pub(super) fn find(topology: &mut Topology) {
     }
 
     let balanced = closed::balanced_parts(topology, members.len());
+    let mut end = 0;
+    let ranges: Vec<Range<u32>> = members
+        .iter()
+        .map(|triangles| {
+            let start = end;
+            end += triangles.len() as u32;
+            start..end
+        })
+        .collect();
+    topology.by_part = members.concat();
     let topology_ref = &*topology;
-    let parts = members
-        .par_iter()
+    let parts = ranges
+        .into_par_iter()
         .zip(balanced)
-        .map(|(triangles, balanced)| {
+        .map(|(range, balanced)| {
+            let triangles = &topology_ref.by_part[range.start as usize..range.end as usize];
             let shape = if !balanced {
                 Shape::Open
             } else if embedded::is_embedded(topology_ref, triangles) {
@@ -85,7 +97,7 @@ pub(super) fn find(topology: &mut Topology) {
                 Shape::SelfIntersecting
             };
             let corners = triangles.iter().flat_map(|&t| topology_ref.corners(t as usize));
-            Part { triangles: triangles.len() as u32, shape, bounds: Bounds::of(corners) }
+            Part { triangles: range, shape, bounds: Bounds::of(corners) }
         })
         .collect();
     topology.parts = parts;

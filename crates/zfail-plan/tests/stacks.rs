@@ -1,0 +1,123 @@
+//! The bound on stacked layers and the division into batches.
+
+mod shapes;
+
+use glam::{DAffine3, DVec3};
+use shapes::Soup;
+use zfail_plan::plan::{Caster, Counting, Frame, FramePlan, Planner, ShadowLight, Technique};
+use zfail_plan::scene::{Bounds, LightKind};
+use zfail_plan::stack;
+use zfail_plan::topology::Topology;
+use zfail_plan::view::{Projection, View};
+
+fn sheets(count: u32) -> Soup {
+    let mut soup: Soup = (Vec::new(), Vec::new());
+    for i in 0..count {
+        let y = i as f32 / count as f32;
+        let base = soup.0.len() as u32;
+        soup.0.extend([[-1.0, y, -1.0], [1.0, y, -1.0], [1.0, y, 1.0], [-1.0, y, 1.0]]);
+        soup.1.extend([[base, base + 2, base + 1], [base, base + 3, base + 2]]);
+    }
+    soup
+}
+
+fn within(soup: &Soup, light: LightKind, limit: usize) -> bool {
+    let t = Topology::new(&soup.0, &soup.1, |_| true).unwrap();
+    let light = light.homogeneous();
+    let frame = stack::Frame::new(light, &t.bounds());
+    let cones: Vec<_> = (0..t.triangles.len()).map(|i| stack::cone(t.corners(i), light, &frame)).collect();
+    stack::is_within(&cones, &frame, limit)
+}
+
+fn lamp() -> LightKind {
+    LightKind::Point { position: DVec3::new(0.2, 5.0, 0.1), range: f64::INFINITY }
+}
+
+fn sun() -> LightKind {
+    LightKind::Directional { direction: DVec3::new(0.01, -1.0, 0.02).normalize() }
+}
+
+#[test]
+fn a_stack_of_sheets_is_as_deep_as_it_has_sheets() {
+    for light in [lamp(), sun()] {
+        // Along the diagonal both triangles of a sheet may share a cell.
+        assert!(within(&sheets(100), light, 200));
+        assert!(!within(&sheets(100), light, 99));
+    }
+}
+
+#[test]
+fn a_finely_divided_surface_is_shallow() {
+    let torus = shapes::torus(200, 100, 0.4);
+    for light in [lamp(), sun(), LightKind::Point { position: DVec3::ZERO, range: f64::INFINITY }] {
+        // Four layers, and at each corner of the grid six triangles.
+        assert!(within(&torus, light, 4 * 6));
+        assert!(!within(&torus, light, 2));
+    }
+}
+
+#[test]
+fn triangles_around_and_behind_the_light_are_found() {
+    // A room: every direction meets a wall, so no bound of zero may hold in any of the cube's faces.
+    let room = shapes::inverted(shapes::cube());
+    let light = LightKind::Point { position: DVec3::new(0.1, 0.2, 0.3), range: f64::INFINITY };
+    assert!(!within(&room, light, 1));
+    assert!(within(&room, light, 6));
+}
+
+fn plan(meshes: &[Topology], light: LightKind, counting: Counting) -> FramePlan {
+    let casters: Vec<Caster<'_>> = meshes
+        .iter()
+        .enumerate()
+        .map(|(i, topology)| {
+            let at = DVec3::Y * i as f64 * 0.01;
+            Caster { topology, mesh: i as u64, world_from_object: DAffine3::from_translation(at) }
+        })
+        .collect();
+    let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
+    let view = View { world_from_view: DAffine3::IDENTITY, projection, size: [64, 64] };
+    let lights = [ShadowLight { kind: light, excluded: &[] }];
+    let frame = Frame { view: &view, casters: &casters, lights: &lights, technique: Technique::Auto, counting };
+    let mut planner = Planner::new();
+    planner.plan(&frame).unwrap();
+    // Planning the same frame again changes nothing.
+    let first = planner.last().clone();
+    let again = planner.plan(&frame).unwrap();
+    assert_eq!(first.indices, again.indices);
+    assert_eq!(first.lights[0].batches, again.lights[0].batches);
+    first
+}
+
+fn topologies(soups: &[Soup]) -> Vec<Topology> {
+    soups.iter().map(|s| Topology::new(&s.0, &s.1, |_| true).unwrap()).collect()
+}
+
+#[test]
+fn shallow_scenes_need_one_batch_and_deep_ones_are_divided() {
+    for light in [lamp(), sun()] {
+        let shallow = topologies(&[shapes::torus(100, 50, 0.4), sheets(20)]);
+        assert_eq!(plan(&shallow, light, Counting::Verdict).lights[0].batches.len(), 1);
+        let deep = topologies(&[sheets(1000)]);
+        let divided = plan(&deep, light, Counting::Verdict);
+        assert!(divided.lights[0].batches.len() >= 1000 / 120, "{}", divided.lights[0].batches.len());
+        // Nothing is lost: every triangle is in one light cap.
+        assert_eq!(divided.lights[0].stats.triangles.light_cap, 2000);
+        assert_eq!(plan(&deep, light, Counting::Raw).lights[0].batches.len(), 1);
+    }
+}
+
+#[test]
+fn a_deep_stack_of_casters_is_divided_between_casters() {
+    let soups: Vec<Soup> = (0..40).map(|_| sheets(10)).collect();
+    let divided = plan(&topologies(&soups), lamp(), Counting::Verdict);
+    assert!(divided.lights[0].batches.len() >= 4);
+    // No caster had to be cut: each is drawn once.
+    assert_eq!(divided.draws.len(), 40);
+}
+
+#[test]
+fn bounds_without_extent_do_no_harm() {
+    let frame = stack::Frame::new(sun().homogeneous(), &Bounds { min: DVec3::ZERO, max: DVec3::ZERO });
+    let cones = vec![stack::cone([DVec3::ZERO; 3], sun().homogeneous(), &frame); 5];
+    assert!(!stack::is_within(&cones, &frame, 4));
+}
