@@ -1,2 +1,70 @@
-//! xtask
-fn main() {}
+//! Set-up, demo and tests: `cargo xtask demo` and `cargo xtask test`.
+//!
+//! Only the standard library is used, so that the first of these commands on a new machine starts within seconds.
+
+mod checks;
+mod setup;
+
+use std::env;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+const USAGE: &str = "\
+Usage: cargo xtask <COMMAND>
+
+Commands:
+  demo   Render the gallery of built-in scenes into ./gallery
+  test   Run every check: format, lints, documentation, tests, benches in test mode
+
+Both install a software Vulkan driver first if the machine has no graphics adapter (Debian and Ubuntu, as root).";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = env::args().skip(1).collect();
+    let result = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["demo"] => setup::graphics_adapter().and_then(|()| demo()),
+        ["test"] => setup::graphics_adapter().and_then(|()| checks::run()),
+        ["help" | "-h" | "--help"] => {
+            println!("{USAGE}");
+            Ok(())
+        }
+        _ => {
+            eprintln!("{USAGE}");
+            return ExitCode::from(2);
+        }
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("xtask: error: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Renders every built-in scene; the profile is the one that tests use, so that only one has to be built.
+fn demo() -> Result<(), String> {
+    let gallery = root().join("gallery");
+    let status = cargo()
+        .args(["run", "--package", "zfail-cli", "--", "gallery"])
+        .arg(&gallery)
+        .status()
+        .map_err(|e| format!("cannot start cargo: {e}"))?;
+    if !status.success() {
+        return Err(format!("the gallery was not rendered ({status})"));
+    }
+    println!("\nThe gallery is in {}: open index.html, or look at the pictures.", gallery.display());
+    Ok(())
+}
+
+/// The cargo that runs this task, in the workspace root.
+fn cargo() -> Command {
+    let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    // Without a desktop session, Mesa's device-selection layer complains on everyone's standard error.
+    command.current_dir(root()).env("NODEVICE_SELECT", "1");
+    command
+}
+
+fn root() -> PathBuf {
+    let manifest = Path::new(env!("CARGO_MANIFEST_DIR"));
+    manifest.parent().unwrap_or(manifest).to_owned()
+}

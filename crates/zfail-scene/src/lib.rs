@@ -1,1 +1,13 @@
-//! zfail-scene
+//! Scenes for zfail: glTF 2.0 files and generated ones.
+//!
+//! In: a `.glb` or `.gltf` file. Out: a [`zfail_plan::scene::Scene`] and the notices about what was repaired or left
+//! out. [`complete`] adds the light and the camera that a file may lack.
+
+pub mod builtin;
+mod complete;
+mod placement;
+pub mod read;
+pub mod write;
+
+pub use complete::complete;
+pub use read::{FileInfo, Limits, LoadError, load, load_with, load_with_info};

@@ -1,0 +1,341 @@
+//! The command line: what may be asked, with its help text and the checks that need no scene.
+
+use crate::names;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use std::path::{Path, PathBuf};
+use zfail_render::wgpu::Backends;
+use zfail_render::{AovKind, Exposure, Technique};
+
+/// Exact stencil shadows of glTF scenes: every shadow boundary to the pixel, without bias and without a shadow map.
+#[derive(Debug, Parser)]
+#[command(name = "zfail", version, max_term_width = 100, subcommand_required = true, arg_required_else_help = true)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+impl Cli {
+    /// Names of the commands.
+    pub fn commands() -> Vec<String> {
+        Self::command().get_subcommands().map(|command| command.get_name().to_owned()).collect()
+    }
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene to a picture, headless.
+    Render(Render),
+    /// Show what is in a scene: meshes and how closed they are, lights, cameras, what is not supported.
+    Info(Info),
+    /// Write the built-in scenes as .glb files with their pictures.
+    Gallery(Gallery),
+}
+
+/// `zfail render`
+#[derive(Args, Debug)]
+pub struct Render {
+    #[command(flatten)]
+    pub scene: SceneArg,
+    /// The picture: .png (tone-mapped, sRGB) or .exr (linear HDR).
+    #[arg(short, long, value_name = "OUT", value_parser = Picture::parse)]
+    pub output: Picture,
+    /// Size of the picture in pixels. Its aspect ratio wins over the camera's; the vertical extent is kept.
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = Size::parse)]
+    pub size: Size,
+    /// Camera by index or name, in depth-first order of the scene's nodes.
+    #[arg(long, value_name = "N|NAME", default_value = "0")]
+    pub camera: String,
+    /// Let only this light shine; repeat it for several. The ambient light stays, and files keep the numbers that the
+    /// lights have in the scene.
+    #[arg(long = "light", value_name = "N", value_parser = parse_light)]
+    pub lights: Vec<usize>,
+    /// Samples per pixel.
+    #[arg(long, value_name = "1|4", default_value = "1", value_parser = parse_samples)]
+    pub samples: u32,
+    /// How shadows are determined.
+    #[arg(long, value_name = "NAME", default_value = "auto", value_parser = technique_parser())]
+    pub technique: Technique,
+    /// Light everything, as if nothing cast a shadow.
+    #[arg(long)]
+    pub no_shadows: bool,
+    /// Stops by which radiance is scaled (0 keeps it), or 'auto' to suit the picture.
+    #[arg(long, value_name = "EV|auto", default_value = "auto", allow_negative_numbers = true)]
+    #[arg(value_parser = parse_exposure)]
+    pub exposure: Exposure,
+    /// One more result, sampled at pixel centres; repeat it for several. KIND is shadow or stencil (PATH is a folder,
+    /// light-<i>.png for each light), depth or position (.exr), normal or albedo (.exr or .png).
+    #[arg(long = "aov", value_name = "KIND=PATH", value_parser = Aov::parse)]
+    pub aovs: Vec<Aov>,
+    /// Counts and times of this run as JSON.
+    #[arg(long, value_name = "FILE.json")]
+    pub stats: Option<PathBuf>,
+    #[command(flatten)]
+    pub device: Device,
+    #[command(flatten)]
+    pub verbosity: Verbosity,
+}
+
+/// `zfail info`
+#[derive(Args, Debug)]
+pub struct Info {
+    #[command(flatten)]
+    pub scene: SceneArg,
+    /// Print JSON instead of text.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `zfail gallery`
+#[derive(Args, Debug)]
+pub struct Gallery {
+    /// Folder for NAME.glb, NAME-CAMERA.png and index.html; made if it is missing.
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+    /// Size of the pictures in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = Size::parse)]
+    pub size: Size,
+    /// Samples per pixel.
+    #[arg(long, value_name = "1|4", default_value = "4", value_parser = parse_samples)]
+    pub samples: u32,
+    #[command(flatten)]
+    pub device: Device,
+    #[command(flatten)]
+    pub verbosity: Verbosity,
+}
+
+/// The scene that a command works on.
+#[derive(Args, Debug)]
+pub struct SceneArg {
+    /// A .glb or .gltf file, or builtin:NAME.
+    #[arg(value_name = "SCENE")]
+    pub scene: String,
+}
+
+/// Which GPU does the work.
+#[derive(Args, Debug)]
+pub struct Device {
+    /// Graphics interface.
+    #[arg(long, value_name = "NAME")]
+    pub backend: Option<Backend>,
+    /// Use the first adapter whose name contains NAME.
+    #[arg(long, value_name = "NAME")]
+    pub adapter: Option<String>,
+}
+
+/// What is said besides results.
+#[derive(Args, Debug)]
+pub struct Verbosity {
+    /// No notices and no progress; errors are still reported.
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// Width and height in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size(pub [u32; 2]);
+
+impl Size {
+    /// No GPU of today makes larger images; the renderer knows what the one at hand can do.
+    const MAX_SIDE: u32 = 16_384;
+
+    fn parse(text: &str) -> Result<Self, String> {
+        let parsed = text.split_once(['x', 'X']).and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+        let Some([width, height]) = parsed else {
+            return Err("write it as WIDTHxHEIGHT, such as 1280x720".to_owned());
+        };
+        let side = 1..=Self::MAX_SIDE;
+        if !side.contains(&width) || !side.contains(&height) {
+            return Err(format!("each side must be from 1 to {} pixels", Self::MAX_SIDE));
+        }
+        Ok(Self([width, height]))
+    }
+}
+
+/// File formats for images.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// 8 bits per channel.
+    Png,
+    /// 32-bit float.
+    Exr,
+}
+
+impl Format {
+    /// As the extension says; `None` for any other, and for the name of a folder.
+    fn of(path: &Path) -> Option<Self> {
+        if path.as_os_str().to_string_lossy().ends_with(std::path::is_separator) {
+            return None;
+        }
+        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+            "png" => Some(Self::Png),
+            "exr" => Some(Self::Exr),
+            _ => None,
+        }
+    }
+}
+
+/// Where the picture goes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// The file.
+    pub path: PathBuf,
+    /// As its extension says.
+    pub format: Format,
+}
+
+impl Picture {
+    fn parse(text: &str) -> Result<Self, String> {
+        let path = PathBuf::from(text);
+        let format = Format::of(&path).ok_or("the name must end in .png or .exr")?;
+        Ok(Self { path, format })
+    }
+}
+
+/// A result other than the picture, and where it goes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Aov {
+    /// What.
+    pub kind: AovKind,
+    /// The file, or the folder for results that come per light.
+    pub path: PathBuf,
+    /// Of the file, or of each file in the folder.
+    pub format: Format,
+}
+
+impl Aov {
+    fn parse(text: &str) -> Result<Self, String> {
+        let Some((name, path)) = text.split_once('=') else {
+            return Err("write it as KIND=PATH, such as shadow=masks".to_owned());
+        };
+        let Ok(kind) = name.parse() else {
+            let kinds = AovKind::ALL.map(AovKind::name);
+            let hint = names::nearest(name, &kinds).map(|kind| format!(" (did you mean '{kind}'?)"));
+            return Err(format!("unknown kind '{name}'{}; there are: {}", hint.unwrap_or_default(), kinds.join(", ")));
+        };
+        if path.is_empty() {
+            return Err(format!("nothing follows '{name}='; name a file or a folder"));
+        }
+        let path = PathBuf::from(path);
+        let format = match (kind, Format::of(&path)) {
+            (AovKind::Shadow | AovKind::Stencil, _) => Format::Png,
+            (AovKind::Depth | AovKind::Position, Some(Format::Exr)) => Format::Exr,
+            (AovKind::Depth | AovKind::Position, _) => return Err(format!("the file for {name} must end in .exr")),
+            (AovKind::Normal | AovKind::Albedo, Some(format)) => format,
+            (AovKind::Normal | AovKind::Albedo, None) => {
+                return Err(format!("the file for {name} must end in .exr or .png"));
+            }
+        };
+        Ok(Self { kind, path, format })
+    }
+
+    /// Whether there is a file per light in a folder.
+    pub fn is_folder(&self) -> bool {
+        matches!(self.kind, AovKind::Shadow | AovKind::Stencil)
+    }
+}
+
+/// Graphics interfaces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Backend {
+    /// Vulkan.
+    Vulkan,
+    /// Metal.
+    Metal,
+    /// Direct3D 12.
+    Dx12,
+    /// OpenGL and OpenGL ES.
+    Gl,
+}
+
+impl Backend {
+    /// As wgpu's set.
+    pub fn backends(self) -> Backends {
+        match self {
+            Self::Vulkan => Backends::VULKAN,
+            Self::Metal => Backends::METAL,
+            Self::Dx12 => Backends::DX12,
+            Self::Gl => Backends::GL,
+        }
+    }
+}
+
+fn parse_samples(text: &str) -> Result<u32, String> {
+    match text {
+        "1" => Ok(1),
+        "4" => Ok(4),
+        _ => Err("it must be 1 or 4".to_owned()),
+    }
+}
+
+fn parse_exposure(text: &str) -> Result<Exposure, String> {
+    if text == "auto" {
+        return Ok(Exposure::Auto);
+    }
+    match text.parse::<f32>() {
+        Ok(stops) if (-64.0..=64.0).contains(&stops) => Ok(Exposure::Ev(stops)),
+        _ => Err("it must be 'auto' or a number of stops from -64 to 64".to_owned()),
+    }
+}
+
+fn parse_light(text: &str) -> Result<usize, String> {
+    text.parse().map_err(|_| "it must be the number of a light, counted from 0".to_owned())
+}
+
+fn technique_parser() -> impl TypedValueParser<Value = Technique> {
+    PossibleValuesParser::new(Technique::ALL.map(Technique::name)).try_map(|name| name.parse::<Technique>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clap_finds_no_fault_in_the_definitions() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes() {
+        assert_eq!(Size::parse("640x480"), Ok(Size([640, 480])));
+        assert_eq!(Size::parse("1X16384"), Ok(Size([1, 16_384])));
+        for wrong in ["", "640", "640x", "x480", "0x480", "640x0", "16385x1", "1x100000", "-1x5", "1x2x3"] {
+            assert!(Size::parse(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn formats_follow_the_extension() {
+        assert_eq!(Picture::parse("a/b.PNG").unwrap().format, Format::Png);
+        assert_eq!(Picture::parse("b.exr").unwrap().format, Format::Exr);
+        for wrong in ["b.jpg", "png", ".png", "a.png/", "b"] {
+            assert!(Picture::parse(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn aov_kinds_and_their_formats() {
+        let parse = |text| Aov::parse(text).map(|aov| (aov.kind, aov.format, aov.is_folder()));
+        assert_eq!(parse("shadow=masks"), Ok((AovKind::Shadow, Format::Png, true)));
+        assert_eq!(parse("stencil=a.b"), Ok((AovKind::Stencil, Format::Png, true)));
+        assert_eq!(parse("depth=d.exr"), Ok((AovKind::Depth, Format::Exr, false)));
+        assert_eq!(parse("normal=n.png"), Ok((AovKind::Normal, Format::Png, false)));
+        assert_eq!(parse("albedo=a=b.exr"), Ok((AovKind::Albedo, Format::Exr, false)));
+        for wrong in ["depth=d.png", "position=p", "normal=n", "albedo=a.jpg", "shadow=", "shadow", "=x", "dept=d.exr"]
+        {
+            assert!(parse(wrong).is_err(), "{wrong}");
+        }
+        assert!(parse("dept=d.exr").unwrap_err().contains("did you mean 'depth'"));
+    }
+
+    #[test]
+    fn exposures() {
+        assert_eq!(parse_exposure("auto"), Ok(Exposure::Auto));
+        assert_eq!(parse_exposure("-1.5"), Ok(Exposure::Ev(-1.5)));
+        for wrong in ["", "x", "nan", "inf", "65"] {
+            assert!(parse_exposure(wrong).is_err(), "{wrong}");
+        }
+    }
+}

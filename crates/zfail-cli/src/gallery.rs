@@ -1,0 +1,82 @@
+//! `zfail gallery`: every built-in scene as a file, with a picture from each of its cameras and a page of them all.
+
+use crate::args::{self, Format};
+use crate::console;
+use crate::contact_sheet::ContactSheet;
+use crate::error::Error;
+use crate::input;
+use crate::output::{self, Outputs};
+use crate::render;
+use zfail_plan::scene::Scene;
+use zfail_render::{Gpu, Renderer, Settings};
+use zfail_scene::builtin::{self, Entry};
+use zfail_scene::write;
+
+/// Renders everything, then writes everything.
+///
+/// # Errors
+/// If the folder cannot be written or the device fails.
+pub fn run(args: &args::Gallery) -> Result<(), Error> {
+    output::check_folder(&args.folder)?;
+    let gpu = input::gpu(&args.device)?;
+    let scenes: Vec<(&Entry, Scene)> =
+        builtin::SCENES.iter().filter_map(|entry| Some((entry, builtin::scene(entry.name)?))).collect();
+
+    let pictures = scenes.iter().map(|(_, scene)| scene.cameras.len()).sum();
+    let progress = console::progress(pictures, args.verbosity.quiet);
+    let mut outputs = Outputs::default();
+    let mut sheet = ContactSheet::default();
+    for (Entry { name, description }, scene) in &scenes {
+        progress.set_message(*name);
+        let glb = write::to_glb(scene).map_err(|e| Error::failed(format!("{name}: {}", input::chain(&e))))?;
+        outputs.add(args.folder.join(format!("{name}.glb")), glb);
+        sheet.scene(name, description, scene);
+        for (camera, bytes) in photograph(&gpu, scene, args, &progress)? {
+            let file = picture_name(name, &camera, scene.cameras.len());
+            sheet.picture(&file, &camera);
+            outputs.add(args.folder.join(file), bytes);
+        }
+    }
+    outputs.add(args.folder.join("index.html"), sheet.finish().into_bytes());
+    outputs.commit()
+}
+
+/// The picture of each camera with the camera's name.
+fn photograph(
+    gpu: &Gpu,
+    scene: &Scene,
+    args: &args::Gallery,
+    progress: &indicatif::ProgressBar,
+) -> Result<Vec<(String, Vec<u8>)>, Error> {
+    let settings = Settings { samples: args.samples, ..Settings::default() };
+    let bounds = scene.bounds();
+    let mut renderer = Renderer::new(gpu, scene).map_err(|e| render::failed(&e))?;
+    let mut pictures = Vec::new();
+    for camera in &scene.cameras {
+        let view = camera.view(args.size.0, &bounds);
+        let (picture, _) = renderer.picture(&view, &settings).map_err(|e| render::failed(&e))?;
+        pictures.push((camera.name.clone(), render::encode_picture(&picture, Format::Png)?));
+        progress.inc(1);
+    }
+    Ok(pictures)
+}
+
+/// `SCENE.png`, or `SCENE-CAMERA.png` where there are several cameras.
+fn picture_name(scene: &str, camera: &str, cameras: usize) -> String {
+    if cameras == 1 {
+        return format!("{scene}.png");
+    }
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
+    format!("{scene}-{}.png", camera.chars().map(plain).collect::<String>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::picture_name;
+
+    #[test]
+    fn pictures_are_named_after_scene_and_camera() {
+        assert_eq!(picture_name("hall", "Main view", 1), "hall.png");
+        assert_eq!(picture_name("hall", "Main view", 2), "hall-main-view.png");
+    }
+}

@@ -1,0 +1,26 @@
+//! `zfail info`: what is in a scene, and how each mesh will cast.
+
+mod report;
+mod text;
+
+use crate::args;
+use crate::console;
+use crate::error::Error;
+use crate::input;
+use report::Report;
+
+/// Prints the report as text or JSON. Notices are part of it, not said besides.
+///
+/// # Errors
+/// If the scene cannot be loaded or standard output cannot be written.
+pub fn run(args: &args::Info) -> Result<(), Error> {
+    let (scene, file) = input::read(&args.scene)?;
+    let report = Report::new(&scene, file)?;
+    if args.json {
+        let json = serde_json::to_string_pretty(&report)
+            .map_err(|e| Error::failed(format!("cannot encode the report: {e}")))?;
+        console::print(&format!("{json}\n"))
+    } else {
+        console::print(&report.to_string())
+    }
+}

@@ -1,0 +1,121 @@
+//! The scene that a command works on, and the camera, lights and GPU that it asks for.
+
+use crate::args::{Device, SceneArg};
+use crate::error::Error;
+use crate::names;
+use std::path::Path;
+use zfail_plan::scene::{Camera, Scene};
+use zfail_render::{Gpu, GpuOptions};
+use zfail_scene::{FileInfo, Limits, builtin};
+
+const BUILTIN: &str = "builtin:";
+
+/// Loads a file as it is, with what it says about itself, or generates a built-in scene.
+///
+/// # Errors
+/// If the file cannot be used, or there is no such built-in scene.
+pub fn read(SceneArg { scene }: &SceneArg) -> Result<(Scene, Option<FileInfo>), Error> {
+    if let Some(name) = scene.strip_prefix(BUILTIN) {
+        let scene = builtin::scene(name).ok_or_else(|| names::unknown("built-in scene", name, &builtin_names()))?;
+        return Ok((scene, None));
+    }
+    let path = Path::new(scene);
+    match zfail_scene::load_with_info(path, &Limits::default()) {
+        Ok((scene, info)) => Ok((scene, Some(info))),
+        Err(e) if !path.exists() && builtin_names().contains(&scene.as_str()) => {
+            Err(Error::failed(format!("{}; the built-in scene of that name is '{BUILTIN}{scene}'", chain(&e))))
+        }
+        Err(e) => Err(Error::failed(chain(&e))),
+    }
+}
+
+/// A scene that can be rendered: a file lacks no camera, light or ambient light any more.
+///
+/// # Errors
+/// As [`read`].
+pub fn complete(scene: &SceneArg) -> Result<Scene, Error> {
+    let (mut scene, file) = read(scene)?;
+    if file.is_some() {
+        zfail_scene::complete(&mut scene);
+    }
+    Ok(scene)
+}
+
+/// Names of the built-in scenes.
+pub fn builtin_names() -> Vec<&'static str> {
+    builtin::SCENES.iter().map(|entry| entry.name).collect()
+}
+
+/// The camera that `wanted` numbers or names.
+///
+/// # Errors
+/// If there is none.
+pub fn camera<'a>(scene: &'a Scene, wanted: &str) -> Result<&'a Camera, Error> {
+    let names: Vec<&str> = scene.cameras.iter().map(|camera| camera.name.as_str()).collect();
+    Ok(&scene.cameras[names::index_of("camera", wanted, &names)?])
+}
+
+/// The lights that shine, in ascending order: all of them, or those in `wanted`.
+///
+/// # Errors
+/// If one of them does not exist.
+pub fn lights(scene: &Scene, wanted: &[usize]) -> Result<Vec<usize>, Error> {
+    if wanted.is_empty() {
+        return Ok((0..scene.lights.len()).collect());
+    }
+    if let Some(light) = wanted.iter().find(|light| **light >= scene.lights.len()) {
+        let names: Vec<&str> = scene.lights.iter().map(|light| light.name.as_str()).collect();
+        return Err(names::unknown_index("light", &light.to_string(), &names));
+    }
+    let mut lights = wanted.to_vec();
+    lights.sort_unstable();
+    lights.dedup();
+    Ok(lights)
+}
+
+/// Opens the GPU that `device` asks for.
+///
+/// # Errors
+/// If there is none.
+pub fn gpu(device: &Device) -> Result<Gpu, Error> {
+    let mut options = GpuOptions { adapter: device.adapter.clone(), ..GpuOptions::default() };
+    if let Some(backend) = device.backend {
+        options.backends = backend.backends();
+    }
+    Gpu::new(&options).map_err(|e| Error::failed(chain(&e)))
+}
+
+/// An error with its causes, each said once.
+pub fn chain(error: &dyn std::error::Error) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        let reason = error.to_string();
+        if !text.contains(&reason) {
+            text = format!("{text}: {reason}");
+        }
+        cause = error.source();
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::lights;
+    use zfail_plan::scene::{Light, LightKind, Scene};
+
+    #[test]
+    fn lights_are_chosen_by_the_numbers_of_the_file() {
+        let light = Light {
+            name: "sun".to_owned(),
+            kind: LightKind::Directional { direction: zfail_plan::glam::DVec3::NEG_Y },
+            color: [1.0; 3],
+            intensity: 1.0,
+            excluded: Vec::new(),
+        };
+        let scene = Scene { lights: vec![light; 3], ..Scene::default() };
+        assert_eq!(lights(&scene, &[]), Ok(vec![0, 1, 2]));
+        assert_eq!(lights(&scene, &[2, 0, 2]), Ok(vec![0, 2]));
+        assert!(lights(&scene, &[0, 3]).unwrap_err().to_string().starts_with("unknown light '3'; there are: 0 'sun'"));
+    }
+}

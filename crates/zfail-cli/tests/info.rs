@@ -1,0 +1,60 @@
+//! `zfail info`: what it says about scenes whose facts are known.
+
+mod support;
+
+use serde_json::Value;
+use support::{small_scene, zfail};
+
+#[test]
+fn json_states_the_facts_of_the_small_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    small_scene(folder.path());
+    let report: Value =
+        serde_json::from_str(&zfail(folder.path(), &["info", "small.gltf", "--json"]).ok().stdout).unwrap();
+    assert_eq!(report["triangles"], 4);
+    assert_eq!(report["bounds"], serde_json::json!([[-4.0, 0.0, -4.0], [4.0, 1.0, 4.0]]));
+    let mesh = &report["meshes"][0];
+    assert_eq!(mesh["name"], "squares");
+    assert_eq!((&mesh["vertices"], &mesh["points"], &mesh["triangles"]), (&8.into(), &8.into(), &4.into()));
+    assert_eq!((&mesh["closed_share"], &mesh["single_share"]), (&0.0.into(), &0.0.into()));
+    assert_eq!((&mesh["boundary_edges"], &mesh["non_manifold_edges"]), (&8.into(), &0.into()));
+    assert_eq!(mesh["parts"].as_array().unwrap().len(), 2);
+    assert_eq!(mesh["parts"][0]["casting"], "double");
+    let kinds: Vec<_> = report["lights"].as_array().unwrap().iter().map(|light| light["kind"].clone()).collect();
+    assert_eq!(kinds, ["directional", "point", "spot"]);
+    let cameras: Vec<_> = report["cameras"].as_array().unwrap().iter().map(|camera| camera["name"].clone()).collect();
+    assert_eq!(cameras, ["above", "aside"]);
+}
+
+#[test]
+fn text_names_everything_that_can_be_chosen() {
+    let folder = tempfile::tempdir().unwrap();
+    small_scene(folder.path());
+    let text = zfail(folder.path(), &["info", "small.gltf"]).ok().stdout;
+    for line in [
+        "scene 'small': 4 triangles in 1 instance\n",
+        "    0  'squares': 4 triangles, 8 vertices (8 distinct points), 0 % closed; 8 boundary, 0 non-manifold",
+        "       casts double: 4 triangles in 2 parts",
+        "    1  'lamp': point at (1.5 3 0), 40 cd, colour (1 1 1)",
+        "    1  'aside': perspective at (0 2 8) towards (0 0 -1), 51.6 degrees high",
+        "materials: 1 (1 opaque, 0 mask, 0 blend)",
+    ] {
+        assert!(text.contains(line), "'{line}' is not in:\n{text}");
+    }
+}
+
+#[test]
+fn every_built_in_scene_can_be_described() {
+    let folder = tempfile::tempdir().unwrap();
+    let listed = zfail(folder.path(), &["info", "builtin:?"]).fails(2, &["there are: "]).stderr;
+    let names: Vec<&str> = listed.split("there are: ").nth(1).unwrap().trim().split(", ").collect();
+    assert!(names.len() >= 8, "{names:?}");
+    for name in names {
+        let scene = format!("builtin:{name}");
+        let report: Value =
+            serde_json::from_str(&zfail(folder.path(), &["info", "--json", &scene]).ok().stdout).unwrap();
+        assert!(report["triangles"].as_u64().unwrap() > 0, "{name}");
+        assert!(!report["lights"].as_array().unwrap().is_empty(), "{name}");
+        assert!(!report["cameras"].as_array().unwrap().is_empty(), "{name}");
+    }
+}

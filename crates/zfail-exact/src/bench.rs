@@ -1,0 +1,142 @@
+//! Renders a recipe, asks the oracle, and compares both masks and counts.
+
+use crate::recipe::Recipe;
+use zfail_oracle::{Cast, CastTable, Guards, Oracle, Report, SizeMismatch, Truth};
+use zfail_plan::{
+    casting::{self, Casting},
+    glam::DVec4,
+    scene::{LightKind, Scene},
+    topology::{NONE, Topology, TopologyError},
+    view::View,
+};
+use zfail_render::{AovKind, Aovs, Gpu, RenderError, Renderer, Settings};
+
+/// A scene that could not be compared.
+#[derive(Debug, thiserror::Error)]
+pub enum BenchError {
+    /// The renderer failed.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// The renderer's image has the wrong size.
+    #[error(transparent)]
+    Size(#[from] SizeMismatch),
+    /// A mesh of the scene is invalid.
+    #[error(transparent)]
+    Topology(#[from] TopologyError),
+    /// The renderer gave fewer images than there are lights.
+    #[error("no image for light {0}")]
+    Missing(usize),
+}
+
+/// One light's comparison.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// Which light.
+    pub light: usize,
+    /// Masks.
+    pub mask: Report,
+    /// Counts modulo 256.
+    pub count: Report,
+}
+
+impl Comparison {
+    /// Whether any pixel is wrong.
+    #[must_use]
+    pub fn failed(&self) -> bool {
+        !self.mask.wrong.is_empty() || !self.count.wrong.is_empty()
+    }
+}
+
+/// What the renderer made of a recipe, and what is right.
+#[derive(Clone, Debug)]
+pub struct Images {
+    /// Masks and counts of the renderer.
+    pub rendered: Aovs,
+    /// The truth per light.
+    pub truths: Vec<Truth>,
+}
+
+impl Images {
+    /// Compares every light.
+    ///
+    /// # Errors
+    /// If images are missing or of the wrong size.
+    pub fn compare(&self) -> Result<Vec<Comparison>, BenchError> {
+        let image = |images: &[Vec<u8>], light: usize| images.get(light).cloned().ok_or(BenchError::Missing(light));
+        let compare = |(light, truth): (usize, &Truth)| {
+            let mask = truth.compare_mask(&image(&self.rendered.shadow, light)?)?;
+            let count = truth.compare_count(&image(&self.rendered.stencil, light)?)?;
+            Ok(Comparison { light, mask, count })
+        };
+        self.truths.iter().enumerate().map(compare).collect()
+    }
+}
+
+/// Renders `recipe` and judges it.
+///
+/// # Errors
+/// If the renderer fails.
+pub fn images(gpu: &Gpu, recipe: &Recipe, settings: &Settings) -> Result<Images, BenchError> {
+    let scene = recipe.scene();
+    let rendered = render(gpu, &scene, &recipe.view, settings)?;
+    Ok(Images { rendered, truths: truths(&scene, &recipe.view)? })
+}
+
+/// Masks and counts of every light of `scene`.
+///
+/// # Errors
+/// If the renderer fails.
+pub fn render(gpu: &Gpu, scene: &Scene, view: &View, settings: &Settings) -> Result<Aovs, BenchError> {
+    Ok(Renderer::new(gpu, scene)?.aovs(view, settings, &[AovKind::Shadow, AovKind::Stencil])?)
+}
+
+/// The truth for every light of `scene`.
+///
+/// # Errors
+/// If a mesh of the scene is invalid.
+pub fn truths(scene: &Scene, view: &View) -> Result<Vec<Truth>, BenchError> {
+    truths_with(scene, view, Guards::default())
+}
+
+/// The truth for every light of `scene`, under the given guards.
+///
+/// # Errors
+/// If a mesh of the scene is invalid.
+pub fn truths_with(scene: &Scene, view: &View, guards: Guards) -> Result<Vec<Truth>, BenchError> {
+    let oracle = Oracle::with_guards(scene, guards);
+    let judge = |(i, light)| Ok(oracle.judge(view, light, &casts(scene, i)?));
+    scene.lights.iter().enumerate().map(judge).collect()
+}
+
+/// The weights that the volumes are built with, which decide what the count is of; facing is left to the oracle.
+fn casts(scene: &Scene, light: usize) -> Result<CastTable, BenchError> {
+    let mut castings: Vec<(Topology, Vec<Casting>)> = Vec::new();
+    for instance in &scene.instances {
+        let mesh = &scene.meshes[instance.mesh];
+        let topology = Topology::new(&mesh.positions, &mesh.triangles, |t| scene.triangle_casts(instance.mesh, t))?;
+        let object_from_world = instance.world_from_object.inverse();
+        let object_light = match scene.lights[light].kind {
+            LightKind::Point { position, .. } | LightKind::Spot { position, .. } => {
+                let linear = instance.world_from_object.matrix3.inverse();
+                (linear * (position - instance.world_from_object.translation)).extend(1.0)
+            }
+            LightKind::Directional { direction } => {
+                DVec4::from((object_from_world.transform_vector3(-direction).normalize_or_zero(), 0.0))
+            }
+        };
+        let mut of_parts = Vec::new();
+        casting::castings(&topology, object_light.as_vec4(), &mut of_parts);
+        castings.push((topology, of_parts));
+    }
+    Ok(CastTable::from_fn(scene, |instance, triangle| {
+        let (topology, of_parts) = &castings[instance];
+        match topology.part_of[triangle] {
+            NONE => Cast::None,
+            part => match of_parts[part as usize] {
+                Casting::Front => Cast::Front,
+                Casting::Back => Cast::Back,
+                Casting::Double => Cast::Double,
+            },
+        }
+    }))
+}

@@ -1,0 +1,72 @@
+//! Random scenes of every kind: no pixel may be wrong.
+//!
+//! `ZFAIL_SCENES` sets how many scenes in total (default 320), `ZFAIL_SEED` the first seed (default 1),
+//! `ZFAIL_KIND` limits them to one kind, `ZFAIL_SIZE=WxH` sets the size of the images.
+
+use std::{env, fmt::Write as _, str::FromStr};
+use zfail_exact::{bench, kinds::Kind, recipe::Recipe, shrink::shrink, tally::Tally};
+use zfail_render::{Gpu, GpuOptions, Settings};
+
+fn setting<T: FromStr>(name: &str, default: T) -> T {
+    env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
+}
+
+fn size() -> [u32; 2] {
+    let text: String = setting("ZFAIL_SIZE", "256x160".to_owned());
+    let (w, h) = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?))).unwrap_or((256, 160));
+    [w, h]
+}
+
+#[test]
+fn no_pixel_is_wrong() {
+    let gpu = Gpu::new(&GpuOptions::default()).expect("a graphics adapter");
+    let settings = Settings::default();
+    let only: String = setting("ZFAIL_KIND", String::new());
+    let kinds: Vec<Kind> = Kind::ALL.into_iter().filter(|k| only.is_empty() || format!("{k:?}") == only).collect();
+    let scenes: u64 = setting("ZFAIL_SCENES", 320);
+    let first: u64 = setting("ZFAIL_SEED", 1);
+    let (mut masks, mut counts) = (Tally::default(), Tally::default());
+    let mut failures = String::new();
+    for &kind in &kinds {
+        let (mut mask, mut count) = (Tally::default(), Tally::default());
+        for seed in first..first + scenes.div_ceil(kinds.len() as u64) {
+            let recipe = kind.recipe(seed, size());
+            let comparisons = bench::images(&gpu, &recipe, &settings).and_then(|i| i.compare());
+            let comparisons = comparisons.unwrap_or_else(|e| panic!("{kind:?} seed {seed}: {e}"));
+            for comparison in &comparisons {
+                mask.add(&comparison.mask);
+                count.add(&comparison.count);
+            }
+            if comparisons.iter().any(bench::Comparison::failed) {
+                describe(&mut failures, &gpu, recipe, &settings);
+            }
+        }
+        println!("{:13} masks  {mask}", format!("{kind:?}"));
+        println!("{:13} counts {count}", "");
+        masks.merge(&mask);
+        counts.merge(&count);
+    }
+    println!("all           masks  {masks}");
+    println!("all           counts {counts}");
+    assert!(failures.is_empty(), "{failures}");
+    if only.is_empty() {
+        assert!(
+            masks.rejected * 10 < masks.images && counts.rejected * 5 < counts.images,
+            "too many scenes are too fine"
+        );
+        assert!(masks.lit.min(masks.shadowed) * 20 > masks.checked, "too little is lit or shadowed");
+        assert!(counts.max_count > 255, "no count wraps");
+    }
+}
+
+/// Notes the least scene that fails like `recipe`, and how.
+fn describe(failures: &mut String, gpu: &Gpu, recipe: Recipe, settings: &Settings) {
+    let compare = |r: &Recipe| bench::images(gpu, r, settings).and_then(|i| i.compare()).unwrap_or_default();
+    let least = shrink(recipe, |r| compare(r).iter().any(bench::Comparison::failed));
+    let _ = writeln!(failures, "\n{:?} seed {}, size {:?}: {least:#?}", least.kind, least.seed, least.view.size);
+    for comparison in compare(&least).iter().filter(|c| c.failed()) {
+        let few = |wrong: &[zfail_oracle::Wrong]| format!("{} wrong: {:?}", wrong.len(), &wrong[..wrong.len().min(4)]);
+        let (mask, count) = (few(&comparison.mask.wrong), few(&comparison.count.wrong));
+        let _ = writeln!(failures, "light {}: mask {mask}\n  count {count}", comparison.light);
+    }
+}

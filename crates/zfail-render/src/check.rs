@@ -1,0 +1,62 @@
+//! The rules of the scene types, so that no index goes astray later.
+
+use crate::RenderError;
+use zfail_plan::scene::Scene;
+
+/// Checks every index and size in `scene`.
+pub fn scene(scene: &Scene) -> Result<(), RenderError> {
+    let fail = |message: String| Err(RenderError::Scene(message));
+    for (i, image) in scene.images.iter().enumerate() {
+        let bytes = u64::from(image.width) * u64::from(image.height) * 4;
+        if bytes == 0 || bytes != image.rgba.len() as u64 {
+            return fail(format!("image {i} is {}x{} and has {} bytes", image.width, image.height, image.rgba.len()));
+        }
+    }
+    for (i, texture) in scene.textures.iter().enumerate() {
+        if texture.image >= scene.images.len() {
+            return fail(format!("texture {i} refers to image {}, which does not exist", texture.image));
+        }
+    }
+    for (i, m) in scene.materials.iter().enumerate() {
+        let slots = [
+            m.base_color_texture,
+            m.metallic_roughness_texture,
+            m.normal_texture,
+            m.occlusion_texture,
+            m.emissive_texture,
+        ];
+        if let Some(slot) = slots.into_iter().flatten().find(|slot| slot.texture >= scene.textures.len()) {
+            return fail(format!("material {i} refers to texture {}, which does not exist", slot.texture));
+        }
+    }
+    for (i, mesh) in scene.meshes.iter().enumerate() {
+        if let Some(v) = mesh.triangles.iter().flatten().find(|&&v| v as usize >= mesh.positions.len()) {
+            return fail(format!("mesh {i} refers to vertex {v} of {}", mesh.positions.len()));
+        }
+        if mesh.triangles.len() > u32::MAX as usize / 3 {
+            return fail(format!("mesh {i} has {} triangles, too many for 32-bit indices", mesh.triangles.len()));
+        }
+        for p in &mesh.primitives {
+            if p.triangles.start > p.triangles.end || p.triangles.end as usize > mesh.triangles.len() {
+                return fail(format!("mesh {i} has a primitive with triangles {:?}", p.triangles));
+            }
+            if p.material.is_some_and(|m| m >= scene.materials.len()) {
+                return fail(format!("mesh {i} refers to material {:?}, which does not exist", p.material));
+            }
+        }
+    }
+    for (i, instance) in scene.instances.iter().enumerate() {
+        if instance.mesh >= scene.meshes.len() {
+            return fail(format!("instance {i} refers to mesh {}, which does not exist", instance.mesh));
+        }
+        if !instance.world_from_object.is_finite() {
+            return fail(format!("instance {i} has a transform that is not finite"));
+        }
+    }
+    for (i, light) in scene.lights.iter().enumerate() {
+        if let Some(e) = light.excluded.iter().find(|&&e| e >= scene.instances.len()) {
+            return fail(format!("light {i} excludes instance {e}, which does not exist"));
+        }
+    }
+    Ok(())
+}

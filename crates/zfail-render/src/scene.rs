@@ -1,0 +1,116 @@
+//! A scene on the device: what stays from frame to frame.
+
+use crate::draw_list::DrawList;
+use crate::geometry::MeshBuffers;
+use crate::layouts::Layouts;
+use crate::{Gpu, RenderError, Settings, check, materials};
+use zfail::{Caster, Counting, Frame, LightStats, ShadowLight, Shadows};
+use zfail_plan::scene::{Bounds, Instance, Light, Scene};
+use zfail_plan::view::View;
+
+/// Uploaded meshes and materials, registered casters, and the plain data that frames are made from.
+#[derive(Debug)]
+pub struct SceneOnGpu {
+    /// `None` for meshes without triangles.
+    pub meshes: Vec<Option<MeshBuffers>>,
+    /// The last is the default material.
+    pub materials: Vec<wgpu::BindGroup>,
+    pub draws: DrawList,
+    pub instances: Vec<Instance>,
+    pub lights: Vec<Light>,
+    pub bounds: Bounds,
+    pub ambient: [f32; 3],
+    pub background: [f32; 3],
+    /// Radiance of the strongest emission.
+    pub emission: [f32; 3],
+    pub shadows: Shadows,
+    casters: Vec<Caster>,
+    /// By instance.
+    caster_of: Vec<Option<usize>>,
+}
+
+impl SceneOnGpu {
+    pub fn new(gpu: &Gpu, layouts: &Layouts, scene: &Scene) -> Result<Self, RenderError> {
+        check::scene(scene)?;
+        let mut shadows = Shadows::new(&gpu.device);
+        let mut meshes = Vec::with_capacity(scene.meshes.len());
+        let mut ids = Vec::with_capacity(scene.meshes.len());
+        for (m, mesh) in scene.meshes.iter().enumerate() {
+            if mesh.triangles.is_empty() {
+                meshes.push(None);
+                ids.push(None);
+                continue;
+            }
+            meshes.push(Some(MeshBuffers::new(gpu, mesh)?));
+            let casts = |t| scene.triangle_casts(m, t);
+            let casting =
+                scene.instances.iter().any(|i| i.mesh == m && i.casts_shadow) && (0..mesh.triangles.len()).any(casts);
+            ids.push(if casting {
+                Some(shadows.add_mesh(&gpu.device, &gpu.queue, &mesh.positions, &mesh.triangles, casts)?)
+            } else {
+                None
+            });
+        }
+        let mut casters = Vec::new();
+        let mut caster_of = Vec::with_capacity(scene.instances.len());
+        for instance in &scene.instances {
+            caster_of.push(ids[instance.mesh].filter(|_| instance.casts_shadow).map(|mesh| {
+                casters.push(Caster { mesh, world_from_object: instance.world_from_object });
+                casters.len() - 1
+            }));
+        }
+        let emission = scene
+            .materials
+            .iter()
+            .fold([0.0; 3], |greatest, m| std::array::from_fn(|c| f32::max(greatest[c], m.emissive[c])));
+        let on_gpu = Self {
+            meshes,
+            materials: materials::upload(gpu, layouts, scene),
+            draws: DrawList::new(scene),
+            instances: scene.instances.clone(),
+            lights: scene.lights.clone(),
+            bounds: scene.bounds(),
+            ambient: scene.ambient,
+            background: scene.background,
+            emission,
+            shadows,
+            casters,
+            caster_of,
+        };
+        gpu.check()?;
+        Ok(on_gpu)
+    }
+
+    /// The lights that `settings` choose, as indices into [`Self::lights`].
+    pub fn chosen(&self, settings: &Settings) -> Result<Vec<usize>, RenderError> {
+        let count = self.lights.len();
+        let Some(chosen) = &settings.lights else { return Ok((0..count).collect()) };
+        match chosen.iter().find(|&&index| index >= count) {
+            None => Ok(chosen.clone()),
+            Some(&index) => Err(RenderError::UnknownLight { index, count }),
+        }
+    }
+
+    /// Plans and uploads the volumes of `chosen` lights.
+    pub fn plan(
+        &mut self,
+        gpu: &Gpu,
+        view: &View,
+        chosen: &[usize],
+        settings: &Settings,
+        counting: Counting,
+    ) -> Result<Vec<LightStats>, RenderError> {
+        let excluded: Vec<Vec<usize>> = chosen
+            .iter()
+            .map(|&l| self.lights[l].excluded.iter().filter_map(|&instance| self.caster_of[instance]).collect())
+            .collect();
+        let lights: Vec<ShadowLight<'_>> = chosen
+            .iter()
+            .zip(&excluded)
+            .map(|(&l, excluded)| ShadowLight { kind: self.lights[l].kind, excluded })
+            .collect();
+        let technique = settings.technique;
+        let frame = Frame { view, casters: &self.casters, lights: &lights, technique, counting };
+        Ok(self.shadows.prepare(&gpu.device, &gpu.queue, &frame)?)
+    }
+}

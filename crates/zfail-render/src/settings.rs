@@ -1,0 +1,33 @@
+//! How a frame is rendered: the caller's choices, apart from scene and view.
+
+use zfail::Technique;
+
+/// Choices for one frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// The shadow-volume method.
+    pub technique: Technique,
+    /// Samples per pixel: 1 or 4. Every sample has a shadow verdict of its own.
+    pub samples: u32,
+    /// Whether anything casts shadows.
+    pub shadows: bool,
+    /// The lights that shine, as indices into the scene's; `None` for all.
+    pub lights: Option<Vec<usize>>,
+    /// How radiance becomes brightness.
+    pub exposure: Exposure,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { technique: Technique::Auto, samples: 1, shadows: true, lights: None, exposure: Exposure::Auto }
+    }
+}
+
+/// How scene radiance is scaled before tone mapping.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Exposure {
+    /// From the picture's own luminance.
+    Auto,
+    /// By 2 to this power, in stops: 0 keeps radiance as it is, greater is brighter.
+    Ev(f32),
+}

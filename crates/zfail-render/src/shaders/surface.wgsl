@@ -1,0 +1,164 @@
+// Triangles of the scene: the vertex stage of every pass that draws them, and the material at a point.
+
+struct Instance {
+    clip_from_object: mat4x4<f32>,
+    view_from_object: mat4x4<f32>,
+    // Inverse transpose, up to a positive factor.
+    view_from_object_normal: mat4x4<f32>,
+}
+
+@group(1) @binding(0) var<uniform> instance: Instance;
+
+// How a texture is read: rows of the matrix from mesh UV to texture UV; `u.w` is the UV set.
+struct Slot {
+    u: vec4<f32>,
+    v: vec4<f32>,
+}
+
+struct Material {
+    base_color: vec4<f32>,
+    emissive: vec3<f32>,
+    alpha_cutoff: f32,
+    metallic: f32,
+    roughness: f32,
+    normal_scale: f32,
+    occlusion_strength: f32,
+    // 1 where there is a normal texture.
+    normal_mapped: u32,
+    // 1 where base colour is shown as it is.
+    unlit: u32,
+    base_color_slot: Slot,
+    metallic_roughness_slot: Slot,
+    normal_slot: Slot,
+    occlusion_slot: Slot,
+    emissive_slot: Slot,
+}
+
+@group(2) @binding(0) var<uniform> material: Material;
+@group(2) @binding(1) var base_color_texture: texture_2d<f32>;
+@group(2) @binding(2) var base_color_sampler: sampler;
+@group(2) @binding(3) var metallic_roughness_texture: texture_2d<f32>;
+@group(2) @binding(4) var metallic_roughness_sampler: sampler;
+@group(2) @binding(5) var normal_texture: texture_2d<f32>;
+@group(2) @binding(6) var normal_sampler: sampler;
+@group(2) @binding(7) var occlusion_texture: texture_2d<f32>;
+@group(2) @binding(8) var occlusion_sampler: sampler;
+@group(2) @binding(9) var emissive_texture: texture_2d<f32>;
+@group(2) @binding(10) var emissive_sampler: sampler;
+
+struct Vertex {
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) tangent: vec4<f32>,
+    @location(3) uv: vec4<f32>,
+    @location(4) color: vec4<f32>,
+}
+
+struct Fragment {
+    // The same expression as in the shadow volumes, so that caps and surfaces agree to the bit.
+    @invariant @builtin(position) clip: vec4<f32>,
+    // View space, at the pixel's centre even where the triangle does not cover it: derivatives need that.
+    @location(0) position: vec3<f32>,
+    @location(1) @interpolate(perspective, centroid) normal: vec3<f32>,
+    @location(2) @interpolate(perspective, centroid) tangent: vec3<f32>,
+    @location(3) @interpolate(perspective, centroid) bitangent: vec3<f32>,
+    @location(4) @interpolate(perspective, centroid) uv: vec4<f32>,
+    @location(5) @interpolate(perspective, centroid) color: vec4<f32>,
+    // Distance along the view axis, within the triangle.
+    @location(6) @interpolate(perspective, centroid) depth: f32,
+}
+
+@vertex
+fn place(vertex: Vertex) -> Fragment {
+    var out: Fragment;
+    out.clip = instance.clip_from_object * vec4<f32>(vertex.position, 1.0);
+    out.position = (instance.view_from_object * vec4<f32>(vertex.position, 1.0)).xyz;
+    out.normal = (instance.view_from_object_normal * vec4<f32>(vertex.normal, 0.0)).xyz;
+    out.tangent = (instance.view_from_object * vec4<f32>(vertex.tangent.xyz, 0.0)).xyz;
+    let bitangent = cross(vertex.normal, vertex.tangent.xyz) * vertex.tangent.w;
+    out.bitangent = (instance.view_from_object * vec4<f32>(bitangent, 0.0)).xyz;
+    out.uv = vertex.uv;
+    out.color = vertex.color;
+    out.depth = -out.position.z;
+    return out;
+}
+
+struct Surface {
+    albedo: vec3<f32>,
+    alpha: f32,
+    metallic: f32,
+    roughness: f32,
+    occlusion: f32,
+    emissive: vec3<f32>,
+    // View space, unit: for shading, on the side of the eye for double-sided materials.
+    normal: vec3<f32>,
+    // View space, unit: the triangle's own, on the side of the eye.
+    geometric_normal: vec3<f32>,
+}
+
+fn slot_uv(slot: Slot, uv: vec4<f32>) -> vec2<f32> {
+    let p = vec3<f32>(select(uv.xy, uv.zw, slot.u.w > 0.5), 1.0);
+    return vec2<f32>(dot(slot.u.xyz, p), dot(slot.v.xyz, p));
+}
+
+fn unit_or(v: vec3<f32>, fallback: vec3<f32>) -> vec3<f32> {
+    let length_squared = dot(v, v);
+    // False for NaN too.
+    if length_squared > 0.0 && length_squared < 1e38 {
+        return v * inverseSqrt(length_squared);
+    }
+    return fallback;
+}
+
+// All texture reads and derivatives of a surface, so they stand in uniform control flow.
+fn surface(in: Fragment, front: bool) -> Surface {
+    let base_color = textureSample(base_color_texture, base_color_sampler, slot_uv(material.base_color_slot, in.uv))
+        * material.base_color * in.color;
+    let metallic_roughness = textureSample(
+        metallic_roughness_texture, metallic_roughness_sampler, slot_uv(material.metallic_roughness_slot, in.uv),
+    );
+    let normal_uv = slot_uv(material.normal_slot, in.uv);
+    let normal_texel = textureSample(normal_texture, normal_sampler, normal_uv).xyz * 2.0 - 1.0;
+    let occlusion = textureSample(occlusion_texture, occlusion_sampler, slot_uv(material.occlusion_slot, in.uv)).r;
+    let emissive = textureSample(emissive_texture, emissive_sampler, slot_uv(material.emissive_slot, in.uv)).rgb;
+    let position_dx = dpdx(in.position);
+    let position_dy = dpdy(in.position);
+    let uv_dx = dpdx(normal_uv);
+    let uv_dy = dpdy(normal_uv);
+
+    let eye = towards_eye(in.position);
+    let flat_normal = unit_or(cross(position_dx, position_dy), eye);
+
+    var out: Surface;
+    out.albedo = base_color.rgb;
+    out.alpha = base_color.a;
+    out.metallic = clamp(metallic_roughness.b * material.metallic, 0.0, 1.0);
+    out.roughness = clamp(metallic_roughness.g * material.roughness, 0.0, 1.0);
+    out.occlusion = 1.0 + material.occlusion_strength * (occlusion - 1.0);
+    out.emissive = emissive * material.emissive * frame.pre_exposure;
+    out.geometric_normal = select(-flat_normal, flat_normal, dot(flat_normal, eye) >= 0.0);
+
+    let side = select(-1.0, 1.0, front);
+    let outward = side * out.geometric_normal;
+    var normal = unit_or(in.normal, outward);
+    if material.normal_mapped == 1u {
+        var tangent = in.tangent;
+        var bitangent = in.bitangent;
+        if dot(tangent, tangent) < 1e-20 {
+            // No tangents in the mesh: solve for the directions in which u and v grow on the screen.
+            let perpendicular_x = cross(normal, position_dx);
+            let perpendicular_y = cross(position_dy, normal);
+            let handed = sign(dot(cross(position_dx, position_dy), normal));
+            tangent = (perpendicular_y * uv_dx.x + perpendicular_x * uv_dy.x) * handed;
+            bitangent = (perpendicular_y * uv_dx.y + perpendicular_x * uv_dy.y) * handed;
+            // glTF textures have v downwards, and normal maps +y upwards.
+            bitangent = -bitangent;
+        }
+        let t = unit_or(tangent, vec3<f32>(0.0));
+        let b = unit_or(bitangent, vec3<f32>(0.0));
+        let xy = normal_texel.xy * material.normal_scale;
+        normal = unit_or(t * xy.x + b * xy.y + normal * normal_texel.z, normal);
+    }
+    out.normal = side * normal;
+    return out;
+}

@@ -1,0 +1,57 @@
+//! What a frame cost, in the shape of the program's `--stats` file. What the device cannot measure is null.
+
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Figures of one frame.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FrameStats {
+    /// Name of the graphics adapter.
+    pub adapter: String,
+    /// Graphics interface: vulkan, metal, dx12, gl.
+    pub backend: String,
+    /// Format of the depth-stencil target.
+    pub depth_format: String,
+    /// CPU time to plan and upload every light's volumes, milliseconds.
+    pub planning_ms: f64,
+    /// Time of the whole frame on the GPU, milliseconds.
+    pub gpu_ms: Option<f64>,
+    /// One entry per rendered light, in the order of [`crate::Settings::lights`].
+    pub lights: Vec<LightFigures>,
+}
+
+/// Figures of one light.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LightFigures {
+    /// point, spot or directional.
+    pub kind: &'static str,
+    /// Casters considered.
+    pub casters: u32,
+    /// Casters without a volume, by reason.
+    pub culled: BTreeMap<&'static str, u32>,
+    /// Casters in case 1 (z-pass), 2 (z-fail, no caps) and 3 (z-fail with caps) of McGuire et al. 2003.
+    pub cases: [u32; 3],
+    /// Triangles submitted.
+    pub triangles: TriangleFigures,
+    /// Vertices submitted.
+    pub vertices: u32,
+    /// Stencil fragments, where the device can count them.
+    pub fragments: Option<u64>,
+    /// Pixels that the light can reach: x, y, width, height.
+    pub scissor: [u32; 4],
+    /// GPU time of the shadow pass, milliseconds.
+    pub shadow_ms: Option<f64>,
+    /// GPU time of the illumination pass, milliseconds.
+    pub light_ms: Option<f64>,
+}
+
+/// Triangles submitted, by part of the volume.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct TriangleFigures {
+    /// Silhouette sides.
+    pub sides: u32,
+    /// Far end.
+    pub dark_cap: u32,
+    /// Near end.
+    pub light_cap: u32,
+}

@@ -1,0 +1,155 @@
+//! Small tileable images: boards, bricks, tiles, stone, plaster, grass.
+//!
+//! In: sRGB colours `0xRRGGBB`. Out: an [`Image`] of 256 x 256 pixels, the same on every run.
+
+use glam::DVec3;
+use zfail_plan::scene::Image;
+
+const SIZE: u32 = 256;
+
+/// Fills an image from a function of (u, v) in 0..1, v downwards, that gives sRGB in 0..1.
+fn image(name: &str, color: impl Fn(f64, f64) -> DVec3) -> Image {
+    let mut rgba = Vec::with_capacity((SIZE * SIZE * 4) as usize);
+    for y in 0..SIZE {
+        for x in 0..SIZE {
+            let at = |k: u32| (f64::from(k) + 0.5) / f64::from(SIZE);
+            let rgb = (color(at(x), at(y)).clamp(DVec3::ZERO, DVec3::ONE) * 255.0).round();
+            rgba.extend([rgb.x as u8, rgb.y as u8, rgb.z as u8, 255]);
+        }
+    }
+    Image { name: name.to_owned(), width: SIZE, height: SIZE, rgba }
+}
+
+fn srgb(color: u32) -> DVec3 {
+    DVec3::from([16, 8, 0].map(|shift| f64::from(color >> shift & 0xff) / 255.0))
+}
+
+/// A number in 0..1 that only looks random.
+fn hash(x: u32, y: u32, seed: u32) -> f64 {
+    let mut h = x.wrapping_mul(0x9e37_79b1) ^ y.wrapping_mul(0x85eb_ca6b) ^ seed.wrapping_mul(0xc2b2_ae35);
+    for shift in [15, 13, 16] {
+        h = (h ^ h >> shift).wrapping_mul(0x2c1b_3c6d);
+    }
+    f64::from(h ^ h >> 16) / f64::from(u32::MAX)
+}
+
+/// Smooth noise in 0..1 that repeats after `cells` lattice points per unit.
+fn noise(u: f64, v: f64, cells: [u32; 2], seed: u32) -> f64 {
+    let split = |t: f64, n: u32| {
+        let t = t.rem_euclid(1.0) * f64::from(n);
+        let f = t.fract();
+        (t as u32 % n, (t as u32 + 1) % n, f * f * (3.0 - 2.0 * f))
+    };
+    let (x0, x1, fx) = split(u, cells[0]);
+    let (y0, y1, fy) = split(v, cells[1]);
+    let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
+    mix(mix(hash(x0, y0, seed), hash(x1, y0, seed), fx), mix(hash(x0, y1, seed), hash(x1, y1, seed), fx), fy)
+}
+
+/// Four octaves of [`noise`], about -1..1.
+fn clouds(u: f64, v: f64, [x, y]: [u32; 2], seed: u32) -> f64 {
+    (0..4).map(|k| (noise(u, v, [x << k, y << k], seed + k) - 0.5) * 0.5_f64.powi(k as i32)).sum::<f64>() * 1.2
+}
+
+/// 0 within `width` of a whole number, 1 farther away, with an edge of one pixel or so.
+fn joint(t: f64, width: f64, blur: f64) -> f64 {
+    let distance = (t - t.round()).abs();
+    ((distance - width) / blur).clamp(0.0, 1.0)
+}
+
+/// Mottled rock.
+pub(super) fn stone(name: &str, color: u32, contrast: f64) -> Image {
+    image(name, |u, v| srgb(color) * (1.0 + contrast * (clouds(u, v, [5, 5], 1) + 0.3 * clouds(u, v, [40, 40], 9))))
+}
+
+/// Rows of bricks or ashlar, `columns` x `rows` per image, every second row shifted by half a brick.
+pub(super) fn bricks(name: &str, [columns, rows]: [u32; 2], color: u32, mortar: u32) -> Image {
+    image(name, |u, v| {
+        let y = v * f64::from(rows);
+        let row = y as u32;
+        let x = u * f64::from(columns) + 0.5 * f64::from(row % 2);
+        let tone = 1.0 + 0.28 * (hash(x as u32 % columns, row, 3) - 0.5) + 0.22 * clouds(u, v, [10, 10], 5);
+        let width = 0.02 * f64::from(rows) / 8.0;
+        let inside = joint(x, width * f64::from(columns) / f64::from(rows), 0.03) * joint(y, width * 1.5, 0.06);
+        (srgb(mortar) * (1.0 + 0.2 * clouds(u, v, [30, 30], 7))).lerp(srgb(color) * tone, inside)
+    })
+}
+
+/// A checker of `n` x `n` polished tiles with joints.
+pub(super) fn tiles(name: &str, n: u32, colors: [u32; 2], grout: u32) -> Image {
+    image(name, |u, v| {
+        let [x, y] = [u, v].map(|t| t * f64::from(n));
+        let color = srgb(colors[((x as u32 + y as u32) % 2) as usize]);
+        let tone = 1.0 + 0.12 * (hash(x as u32, y as u32, 11) - 0.5) + 0.12 * clouds(u, v, [7, 7], 13);
+        srgb(grout).lerp(color * tone, joint(x, 0.012, 0.02) * joint(y, 0.012, 0.02))
+    })
+}
+
+/// `n` boards whose grain runs along u.
+pub(super) fn planks(name: &str, n: u32, color: u32, gap: u32) -> Image {
+    image(name, |u, v| srgb(gap).lerp(srgb(color) * grain(u, v, n), joint(v * f64::from(n), 0.025, 0.03)))
+}
+
+/// The side of a wooden crate: boards in a frame.
+pub(super) fn crate_side(name: &str, color: u32, gap: u32) -> Image {
+    image(name, |u, v| {
+        let edge = |t: f64| t.min(1.0 - t);
+        let framed = edge(u).min(edge(v)) < 0.13;
+        let (tone, seam) = if framed {
+            let upright = edge(u) < edge(v);
+            let tone = if upright { grain(v, u, 7) } else { grain(u, v, 7) };
+            let nail = [0.065, 0.935].iter().any(|&x| [0.065, 0.935].iter().any(|&y| (u - x).hypot(v - y) < 0.012));
+            (if nail { 0.35 } else { tone * 1.08 }, ((0.13 - edge(u).min(edge(v))) / 0.012).clamp(0.25, 1.0))
+        } else {
+            let shade = ((edge(u).min(edge(v)) - 0.13) / 0.05).clamp(0.0, 1.0);
+            (grain(u, v, 6) * (0.62 + 0.2 * shade), joint(v * 6.0, 0.03, 0.03))
+        };
+        srgb(gap).lerp(srgb(color) * tone, seam)
+    })
+}
+
+fn grain(u: f64, v: f64, boards: u32) -> f64 {
+    let board = (v * f64::from(boards)) as u32;
+    let offset = hash(board, 0, 17);
+    let fibre = noise(u + offset, v, [3, 64], 19) + 0.6 * noise(u + offset, v, [6, 128], 23) - 0.8;
+    1.0 + 0.3 * (hash(board, 1, 29) - 0.5) + 0.28 * fibre
+}
+
+/// Grass, or anything that grows.
+pub(super) fn grass(name: &str, color: u32, dry: u32) -> Image {
+    image(name, |u, v| {
+        let patch = (0.5 + 0.9 * clouds(u, v, [4, 4], 31)).clamp(0.0, 1.0);
+        srgb(color).lerp(srgb(dry), patch) * (0.8 + 0.4 * noise(u, v, [90, 90], 37))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patterns_tile_without_a_seam() {
+        // Across the border neighbouring pixels differ as little as inside.
+        let step = |image: &Image, x: [u32; 2]| -> u32 {
+            (0..SIZE)
+                .map(|y| {
+                    let at = |x: u32| u32::from(image.rgba[((y * SIZE + x) * 4) as usize]);
+                    at(x[0]).abs_diff(at(x[1]))
+                })
+                .sum()
+        };
+        for image in [stone("", 0x888888, 0.5), grass("", 0x336622, 0x887733)] {
+            let inside: u32 = (0..SIZE - 1).map(|x| step(&image, [x, x + 1])).max().unwrap_or(0);
+            assert!(step(&image, [SIZE - 1, 0]) <= inside);
+            assert!(step(&image, [SIZE / 2, 0]) > inside, "the measure sees a seam where there is one");
+        }
+    }
+
+    #[test]
+    fn noise_is_within_its_range() {
+        for k in 0..1000 {
+            let t = f64::from(k) * 0.013 - 5.0;
+            assert!((0.0..=1.0).contains(&noise(t, 3.0 * t, [5, 9], k)));
+        }
+    }
+}

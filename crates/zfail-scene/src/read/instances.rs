@@ -1,0 +1,189 @@
+//! Meshes where the nodes put them.
+//!
+//! In: the document, its node hierarchy and the scene's materials. Out: meshes and instances in the scene.
+
+use super::document::Document;
+use super::error::{Result, invalid};
+use super::graph::{Graph, Visit, affine, is_moderate, unit_quaternion};
+use super::mesh::{self, Built, MAX_COORDINATE, Pose};
+use super::schema::{self, Instancing};
+use crate::placement::{Rank, flatten, rank};
+use glam::{DAffine3, DQuat, DVec3};
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
+use std::ops::Range;
+use zfail_plan::scene::{Instance, Scene};
+
+/// Adds the default scene's meshes and instances to `scene`. Returns, per visit, which instances its node and its
+/// descendants hold.
+pub(super) fn read(document: &Document<'_>, graph: &Graph, scene: &mut Scene) -> Result<Vec<Range<usize>>> {
+    let (poses, pose_of_visit) = poses(document, graph)?;
+    let joints = joints(document, graph)?;
+    let built: Vec<Built> = poses
+        .par_iter()
+        .map(|pose| {
+            let joints = pose.skin.map(|skin| joints[skin].as_slice());
+            mesh::build(document, pose, joints, &scene.materials)
+        })
+        .collect::<Result<_>>()?;
+    check_unused(document, &poses)?;
+    scene.notices.extend(built.iter().flat_map(|b| b.notices.iter().cloned()));
+
+    let mut placer = Placer { document, scene, scene_mesh: vec![None; built.len()], built };
+    let mut first_instance = Vec::with_capacity(graph.visits.len() + 1);
+    for (visit, pose) in graph.visits.iter().zip(pose_of_visit) {
+        first_instance.push(placer.scene.instances.len());
+        if let Some(pose) = pose {
+            placer.place_node(visit, graph.world_from_node[visit.node], pose, poses[pose].skin.is_some())?;
+        }
+    }
+    first_instance.push(scene.instances.len());
+    let held = |(i, visit): (usize, &Visit)| first_instance[i]..first_instance[visit.end];
+    Ok(graph.visits.iter().enumerate().map(held).collect())
+}
+
+/// The distinct poses in the order of their meshes in the file, and the index of each visit's.
+fn poses(document: &Document<'_>, graph: &Graph) -> Result<(Vec<Pose>, Vec<Option<usize>>)> {
+    let meshes = &document.root.meshes;
+    let target_count = |mesh: &schema::Mesh| mesh.primitives.iter().map(|p| p.targets.len()).max().unwrap_or(0);
+    let target_counts: Vec<usize> = meshes.iter().map(target_count).collect();
+    let pose = |visit: &Visit| {
+        let node = &document.root.nodes[visit.node];
+        let Some(mesh) = node.mesh else { return Ok(None) };
+        let weights = node.weights.as_ref().unwrap_or(&meshes[mesh].weights);
+        let weights = &weights[..target_counts[mesh].min(weights.len())];
+        document.budget.charge(weights.len() as u64, 16, || format!("nodes[{}].weights", visit.node))?;
+        let weights = weights.iter().map(|w| w.to_bits()).collect();
+        Ok(Some(Pose { mesh, weights, skin: node.skin }))
+    };
+    let of_visit: Vec<Option<Pose>> = graph.visits.iter().map(pose).collect::<Result<_>>()?;
+    let mut poses: Vec<Pose> = of_visit.iter().flatten().cloned().collect();
+    poses.sort_by(|a, b| (a.mesh, a.skin, &a.weights).cmp(&(b.mesh, b.skin, &b.weights)));
+    poses.dedup();
+    let index: FxHashMap<&Pose, usize> = poses.iter().enumerate().map(|(i, pose)| (pose, i)).collect();
+    let of_visit = of_visit.iter().map(|pose| pose.as_ref().map(|pose| index[pose])).collect();
+    Ok((poses, of_visit))
+}
+
+/// Per skin and joint, the transform from mesh space to the world in the rest pose.
+fn joints(document: &Document<'_>, graph: &Graph) -> Result<Vec<Vec<DAffine3>>> {
+    let skins = document.root.skins.iter().enumerate().map(|(s, skin)| {
+        let size = size_of::<DAffine3>() as u64;
+        document.budget.charge(skin.joints.len() as u64, size, || format!("skins[{s}].joints"))?;
+        let Some(accessor) = skin.inverse_bind_matrices else {
+            return Ok(skin.joints.iter().map(|&j| graph.world_from_node[j]).collect());
+        };
+        let inverse_binds = document.floats::<16>(accessor)?;
+        let joint = |(j, (&node, m)): (usize, (&usize, &[f32; 16]))| {
+            let inverse_bind = affine(&m.map(f64::from)).filter(is_moderate).ok_or_else(|| {
+                let problem =
+                    format!("matrix {j} (accessors[{accessor}]) is not finite, or its last row is not 0 0 0 1");
+                invalid(format!("skins[{s}].inverseBindMatrices"), problem)
+            })?;
+            Ok(graph.world_from_node[node] * inverse_bind)
+        };
+        skin.joints.iter().zip(&inverse_binds).enumerate().map(joint).collect()
+    });
+    skins.collect()
+}
+
+fn check_unused(document: &Document<'_>, poses: &[Pose]) -> Result<()> {
+    let mut used = vec![false; document.root.meshes.len()];
+    poses.iter().for_each(|pose| used[pose.mesh] = true);
+    (0..used.len()).filter(|&m| !used[m]).try_for_each(|m| mesh::check_unused(document, m))
+}
+
+struct Placer<'a> {
+    document: &'a Document<'a>,
+    scene: &'a mut Scene,
+    built: Vec<Built>,
+    /// Where in the scene a built mesh has been moved, once an instance has needed it.
+    scene_mesh: Vec<Option<usize>>,
+}
+
+impl Placer<'_> {
+    fn place_node(&mut self, visit: &Visit, world_from_node: DAffine3, pose: usize, skinned: bool) -> Result<()> {
+        let node = &self.document.root.nodes[visit.node];
+        let name = node.name.clone().unwrap_or_else(|| format!("node {}", visit.node));
+        // Skinning has taken the mesh to the world; its own node's transform does not count.
+        let world_from_node = if skinned { DAffine3::IDENTITY } else { world_from_node };
+        match &node.extensions.instancing {
+            None => self.place(name, visit, world_from_node, pose),
+            Some(instancing) => {
+                let path = format!("nodes[{}].extensions.EXT_mesh_gpu_instancing", visit.node);
+                for (i, local) in instance_transforms(self.document, instancing, &path)?.into_iter().enumerate() {
+                    self.place(format!("{name} #{i}"), visit, world_from_node * local, pose)?;
+                }
+                Ok(())
+            }
+        }
+    }
+
+    fn place(&mut self, name: String, visit: &Visit, world_from_node: DAffine3, pose: usize) -> Result<()> {
+        let (origin, bounds) = (self.built[pose].origin, self.built[pose].bounds);
+        if bounds.is_empty() {
+            return Ok(());
+        }
+        let world_from_object = world_from_node * DAffine3::from_translation(origin);
+        let reach = bounds.transformed(&world_from_object);
+        if !(reach.min.abs().max_element() <= MAX_COORDINATE && reach.max.abs().max_element() <= MAX_COORDINATE) {
+            let problem = format!("places its mesh more than {MAX_COORDINATE:e} m from the origin");
+            return Err(invalid(format!("nodes[{}]", visit.node), problem));
+        }
+        let (mesh, world_from_object) = match rank(&world_from_object.matrix3) {
+            Rank::Full => (self.scene_mesh(pose), world_from_object),
+            Rank::Plane => {
+                let mesh = self.scene_mesh[pose].map_or(&self.built[pose].mesh, |m| &self.scene.meshes[m]);
+                let element = || format!("nodes[{}]", visit.node);
+                self.document.budget.charge(mesh.positions.len() as u64, 100, element)?;
+                let (flat, origin) = flatten(mesh, &world_from_object);
+                self.scene.notices.push(format!("node \"{name}\" flattens its mesh into a plane"));
+                self.scene.meshes.push(flat);
+                (self.scene.meshes.len() - 1, DAffine3::from_translation(origin))
+            }
+            Rank::Line => {
+                self.scene.notices.push(format!("node \"{name}\" shrinks its mesh to a line or a point: not drawn"));
+                return Ok(());
+            }
+        };
+        let casts_shadow = visit.casts_shadow;
+        self.scene.instances.push(Instance { name, mesh, world_from_object, casts_shadow });
+        Ok(())
+    }
+
+    fn scene_mesh(&mut self, pose: usize) -> usize {
+        *self.scene_mesh[pose].get_or_insert_with(|| {
+            self.scene.meshes.push(std::mem::take(&mut self.built[pose].mesh));
+            self.scene.meshes.len() - 1
+        })
+    }
+}
+
+/// The transforms of EXT_mesh_gpu_instancing, from an instance to its node.
+fn instance_transforms(document: &Document<'_>, instancing: &Instancing, path: &str) -> Result<Vec<DAffine3>> {
+    let attribute = |name: &str| instancing.attributes.get(name).copied();
+    let counts = instancing.attributes.iter().map(|(name, &a)| (name, document.root.accessors[a].count));
+    let count = counts.clone().next().map_or(0, |(_, count)| count);
+    if let Some((name, other)) = counts.clone().find(|&(_, other)| other != count) {
+        return Err(invalid(format!("{path}.attributes.{name}"), format!("has {other} elements, others have {count}")));
+    }
+    document.budget.charge(count, 512, || path.into())?;
+    let vectors = |name: &str, default: [f32; 3]| match attribute(name) {
+        Some(accessor) => document.floats::<3>(accessor),
+        None => Ok(vec![default; count as usize]),
+    };
+    let translations = vectors("TRANSLATION", [0.0; 3])?;
+    let scales = vectors("SCALE", [1.0; 3])?;
+    let rotations = match attribute("ROTATION") {
+        Some(accessor) => document.floats::<4>(accessor)?,
+        None => vec![[0.0, 0.0, 0.0, 1.0]; count as usize],
+    };
+    let transform = |i: usize| {
+        let [translation, scale] = [translations[i], scales[i]].map(|v| DVec3::from(v.map(f64::from)));
+        let rotation = unit_quaternion(DQuat::from_array(rotations[i].map(f64::from))).unwrap_or(DQuat::IDENTITY);
+        let transform = DAffine3::from_scale_rotation_translation(scale, rotation, translation);
+        let fault = || invalid(path, format!("instance {i} has a transform beyond all measure"));
+        if is_moderate(&transform) { Ok(transform) } else { Err(fault()) }
+    };
+    (0..count as usize).map(transform).collect()
+}

@@ -1,0 +1,235 @@
+//! One scene mesh from one glTF mesh: its primitives posed, completed and put one after the other.
+//!
+//! In: a mesh of a validated document, its morph weights and, if skinned, its joints. Out: a [`Mesh`] near its own
+//! origin and the translation that puts it back.
+
+use super::document::Document;
+use super::error::{Result, invalid};
+use super::schema::{self, Mode};
+use super::surface::{Surface, read_triangles};
+use super::{pose, shading};
+use crate::placement::{localize, recenter};
+use glam::{DAffine3, DVec2, DVec3};
+use zfail_plan::scene::{Bounds, Material, Mesh, Primitive, TextureRef};
+
+/// A mesh as some node uses it; equal poses are built once.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Pose {
+    /// Index into the document's meshes.
+    pub mesh: usize,
+    /// Bits of the morph weights.
+    pub weights: Vec<u64>,
+    /// Index into the document's skins.
+    pub skin: Option<usize>,
+}
+
+/// A mesh ready for the scene.
+pub(super) struct Built {
+    /// Without triangles if nothing in it can be drawn.
+    pub mesh: Mesh,
+    /// Translation from the mesh's coordinates to the node's space, or to the world if skinned.
+    pub origin: DVec3,
+    /// Of the mesh, without the origin.
+    pub bounds: Bounds,
+    pub notices: Vec<String>,
+}
+
+/// Bytes that a vertex occupies while its mesh is built: the attributes twice over, in both precisions.
+const VERTEX_COST: u64 = 200;
+
+/// Coordinates beyond this, in metres, are refused: their squares must stay finite in single precision.
+pub(super) const MAX_COORDINATE: f64 = 1e15;
+
+/// Builds the mesh for `pose`. `joints` take the mesh's space to the world.
+pub(super) fn build(
+    document: &Document<'_>,
+    pose: &Pose,
+    joints: Option<&[DAffine3]>,
+    materials: &[Material],
+) -> Result<Built> {
+    let source = &document.root.meshes[pose.mesh];
+    let name = source.name.clone().unwrap_or_else(|| format!("mesh {}", pose.mesh));
+    let weights: Vec<f64> = pose.weights.iter().map(|&bits| f64::from_bits(bits)).collect();
+    let mut assembly = Assembly { joints, ..Assembly::new(document, materials, &weights) };
+    for (j, primitive) in source.primitives.iter().enumerate() {
+        assembly.append(primitive, &format!("meshes[{}].primitives[{j}]", pose.mesh))?;
+    }
+    let notices = assembly.counts.notices(&name);
+    let (mesh, origin) = assembly.finish(name);
+    if mesh.positions.iter().flatten().any(|&x| f64::from(x).abs() > MAX_COORDINATE) || origin.length() > MAX_COORDINATE
+    {
+        let problem = format!("reaches more than {MAX_COORDINATE:e} m from its origin");
+        return Err(invalid(format!("meshes[{}]", pose.mesh), problem));
+    }
+    let bounds = mesh.bounds();
+    Ok(Built { mesh, origin, bounds, notices })
+}
+
+/// Checks the indices of a mesh that no node uses, as if it were built.
+pub(super) fn check_unused(document: &Document<'_>, mesh: usize) -> Result<()> {
+    for (j, primitive) in document.root.meshes[mesh].primitives.iter().enumerate() {
+        if let Some(&positions) = primitive.attributes.get("POSITION") {
+            read_triangles(document, primitive, positions, &format!("meshes[{mesh}].primitives[{j}]"))?;
+        }
+    }
+    Ok(())
+}
+
+struct Assembly<'a> {
+    document: &'a Document<'a>,
+    materials: &'a [Material],
+    weights: &'a [f64],
+    joints: Option<&'a [DAffine3]>,
+    positions: Vec<DVec3>,
+    mesh: Mesh,
+    counts: Counts,
+}
+
+/// What could not be taken as it is.
+#[derive(Default)]
+struct Counts {
+    no_triangles: usize,
+    no_positions: usize,
+    remainders: usize,
+    unskinned: usize,
+    normals: usize,
+    attributes: usize,
+}
+
+impl Counts {
+    fn notices(&self, name: &str) -> Vec<String> {
+        let count = |n: usize, thing: &str| format!("{n} {thing}{}", if n == 1 { "" } else { "s" });
+        [
+            (self.no_triangles, "primitive", "of points or lines: not drawn"),
+            (self.no_positions, "primitive", "without POSITION: not drawn"),
+            (self.remainders, "primitive", "whose vertex count is no multiple of 3: the rest is not drawn"),
+            (self.unskinned, "primitive", "of a skinned mesh without joints: left in the mesh's own space"),
+            (self.normals, "vertex normal", "without a direction: replaced"),
+            (self.attributes, "texture coordinates or colour", "that are not finite: replaced"),
+        ]
+        .into_iter()
+        .filter(|(n, ..)| *n > 0)
+        .map(|(n, thing, what)| format!("mesh \"{name}\": {} {what}", count(n, thing)))
+        .collect()
+    }
+}
+
+impl<'a> Assembly<'a> {
+    fn new(document: &'a Document<'a>, materials: &'a [Material], weights: &'a [f64]) -> Self {
+        let (positions, mesh, counts) = Default::default();
+        Self { document, materials, weights, joints: None, positions, mesh, counts }
+    }
+
+    fn append(&mut self, primitive: &schema::Primitive, path: &str) -> Result<()> {
+        let Some(&positions) = primitive.attributes.get("POSITION") else {
+            self.counts.no_positions += 1;
+            return Ok(());
+        };
+        if matches!(primitive.mode, Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) {
+            self.counts.no_triangles += 1;
+            // The indices must be sound all the same.
+            return read_triangles(self.document, primitive, positions, path).map(drop);
+        }
+        let corners = primitive.indices.unwrap_or(positions);
+        if primitive.mode == Mode::Triangles && !self.document.root.accessors[corners].count.is_multiple_of(3) {
+            self.counts.remainders += 1;
+        }
+
+        let count = self.document.root.accessors[positions].count;
+        self.document.budget.charge(count, VERTEX_COST, || path.into())?;
+        let mut surface = Surface::read(self.document, primitive, positions, path)?;
+        pose::morph(self.document, primitive, self.weights, &mut surface, path)?;
+        if let Some(joints) = self.joints
+            && !pose::skin(self.document, primitive, joints, &mut surface, path)?
+        {
+            self.counts.unskinned += 1;
+        }
+        let normals = match surface.normals.take() {
+            Some(mut normals) => {
+                self.counts.normals += shading::mend_normals(&surface, &mut normals);
+                normals
+            }
+            None => {
+                self.document.budget.charge(surface.triangles.len() as u64, 3 * VERTEX_COST, || path.into())?;
+                surface.unshare();
+                // The specification has given tangents ignored along with missing normals.
+                surface.tangents = None;
+                shading::flat_normals(&surface)
+            }
+        };
+        self.counts.attributes += mend_attributes(&mut surface);
+        let normal_map = primitive.material.and_then(|m| self.materials[m].normal_texture);
+        let tangents = tangents(&surface, &normals, normal_map);
+        self.push(surface, &normals, tangents, primitive.material, path)
+    }
+
+    fn push(
+        &mut self,
+        surface: Surface,
+        normals: &[DVec3],
+        tangents: Vec<[f32; 4]>,
+        material: Option<usize>,
+        path: &str,
+    ) -> Result<()> {
+        let count = surface.positions.len();
+        let (first_vertex, first_triangle) = (self.positions.len(), self.mesh.triangles.len());
+        let (Ok(first_vertex), Ok(_)) = (u32::try_from(first_vertex), u32::try_from(first_vertex + count)) else {
+            return Err(self.document.budget.exceeded(path.into()));
+        };
+        let ends = (u32::try_from(first_triangle), u32::try_from(first_triangle + surface.triangles.len()));
+        let (Ok(start), Ok(end)) = ends else {
+            return Err(self.document.budget.exceeded(path.into()));
+        };
+        let mesh = &mut self.mesh;
+        mesh.triangles.extend(surface.triangles.iter().map(|t| t.map(|v| first_vertex + v)));
+        if start < end {
+            mesh.primitives.push(Primitive { triangles: start..end, material });
+        }
+        self.positions.extend(surface.positions);
+        mesh.normals.extend(normals.iter().map(|n| n.as_vec3().to_array()));
+        mesh.tangents.extend(tangents);
+        let [uv0, uv1] = surface.uv.map(|uv| uv.unwrap_or_else(|| vec![[0.0; 2]; count]));
+        mesh.uv0.extend(uv0);
+        mesh.uv1.extend(uv1);
+        mesh.colors.extend(surface.colors.unwrap_or_else(|| vec![[1.0; 4]; count]));
+        Ok(())
+    }
+
+    fn finish(self, name: String) -> (Mesh, DVec3) {
+        let mut mesh = Mesh { name, ..self.mesh };
+        if self.joints.is_some() {
+            let (origin, positions) = localize(&self.positions);
+            mesh.positions = positions;
+            return (mesh, origin);
+        }
+        mesh.positions = self.positions.iter().map(|p| p.as_vec3().to_array()).collect();
+        let origin = recenter(&mut mesh);
+        (mesh, origin)
+    }
+}
+
+/// Replaces texture coordinates and colours that are not finite; returns how many there were.
+fn mend_attributes(surface: &mut Surface) -> usize {
+    fn mend<const N: usize>(values: &mut [[f32; N]], replacement: f32) -> usize {
+        let broken = values.iter_mut().filter(|v| !v.iter().all(|x| x.is_finite()));
+        broken.map(|v| *v = [replacement; N]).count()
+    }
+    let uv: usize = surface.uv.iter_mut().flatten().map(|uv| mend(uv, 0.0)).sum();
+    uv + surface.colors.iter_mut().map(|colors| mend(colors, 1.0)).sum::<usize>()
+}
+
+/// The file's tangents, or made ones if a normal map needs them, or zeros.
+fn tangents(surface: &Surface, normals: &[DVec3], normal_map: Option<TextureRef>) -> Vec<[f32; 4]> {
+    if let Some(tangents) = &surface.tangents {
+        return shading::mend_tangents(tangents);
+    }
+    let uv = normal_map.and_then(|map| Some((map.uv_from_mesh, surface.uv[usize::from(map.uv_set)].as_ref()?)));
+    match uv {
+        None => vec![[0.0; 4]; normals.len()],
+        Some((rows, uv)) => {
+            let transform = |[u, v]: [f32; 2]| DVec2::from(rows.map(|[a, b, c]| f64::from(a * u + b * v + c)));
+            let uv: Vec<DVec2> = uv.iter().map(|&uv| transform(uv)).collect();
+            shading::tangents(surface, normals, &uv)
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! glTF 2.0 files to scenes.
+//!
+//! Data flow one way: `container` (bytes to JSON and binary chunk) -> `schema` (typed JSON) -> `extensions` and
+//! `validate` (nothing is trusted before) -> `document` (buffers and accessors) -> `images`, `materials`
+//! -> `graph` (world transforms) -> `surface` -> `pose` -> `shading` -> `mesh` -> `instances`, `lights`.
+//!
+//! Whatever the bytes are, the result is a scene that satisfies the scene types' invariants or a [`LoadError`]; what
+//! was repaired or left out is in [`Scene::notices`].
+//!
+//! # Repairs
+//! - Left out: points and lines, primitives without positions, what remains of a triangle list after the last whole
+//!   triangle, meshes that a node's scale shrinks to a line or a point, images other than PNG and JPEG or damaged
+//!   inside, every extension that only changes looks.
+//! - Replaced: missing normals (flat ones, on vertices of their own) and those without a direction, texture
+//!   coordinates and colours that are not finite, rotations without length, joint weights that do not add up to 1.
+//! - Approximated: specular-glossiness (diffuse colour alone) and transmission (blending).
+//! - Tolerated: a byte order mark, misaligned accessors, missing bounds of accessors, bytes after the end, a mesh or
+//!   a skin that nothing uses.
+//! - Baked into meshes of their own, in world space: skins (in their rest pose, morph targets at their default
+//!   weights) and meshes that their node flattens into a plane.
+//! - Moved: a mesh far from its own origin, exactly, with the translation in its instances.
+//!
+//! Everything else that breaks the specification and bears on the scene is an error.
+
+mod container;
+mod document;
+mod error;
+mod extensions;
+mod graph;
+mod images;
+mod instances;
+mod lights;
+mod limits;
+mod materials;
+mod mesh;
+mod pose;
+mod schema;
+mod shading;
+mod surface;
+mod uri;
+mod validate;
+
+pub use error::{Fault, LoadError};
+pub use limits::Limits;
+
+use document::Document;
+use error::{Result, invalid, one_line};
+use graph::Graph;
+use limits::Budget;
+use schema::Root;
+use std::fs;
+use std::io;
+use std::path::Path;
+use zfail_plan::scene::Scene;
+
+/// What a file says about itself, beyond the scene that was made of it.
+#[derive(Clone, Debug, Default)]
+pub struct FileInfo {
+    /// `asset.version`.
+    pub version: String,
+    /// The program that wrote the file.
+    pub generator: Option<String>,
+    /// Extensions that the file uses, required or not.
+    pub extensions_used: Vec<String>,
+    /// Extensions that the file declares indispensable.
+    pub extensions_required: Vec<String>,
+    /// Names of the animations, invented where missing.
+    pub animations: Vec<String>,
+    /// Number of skins.
+    pub skins: usize,
+    /// Meshes in the file, including those outside the default scene.
+    pub meshes: usize,
+    /// Nodes in the file, including those outside the default scene.
+    pub nodes: usize,
+    /// Meshes with morph targets.
+    pub morphed_meshes: usize,
+}
+
+/// Loads the default scene of a `.glb` or `.gltf` file.
+///
+/// # Errors
+/// If the file, or one it refers to, cannot be read, breaks the specification, requires a compression extension or
+/// exceeds the default [`Limits`].
+pub fn load(path: &Path) -> std::result::Result<Scene, LoadError> {
+    load_with(path, &Limits::default())
+}
+
+/// [`load`] with other limits.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with(path: &Path, limits: &Limits) -> std::result::Result<Scene, LoadError> {
+    load_with_info(path, limits).map(|(scene, _)| scene)
+}
+
+/// [`load_with`] that also tells what the file says about itself.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with_info(path: &Path, limits: &Limits) -> std::result::Result<(Scene, FileInfo), LoadError> {
+    read(path, limits).map_err(|fault| LoadError { file: path.into(), fault })
+}
+
+fn read(path: &Path, limits: &Limits) -> Result<(Scene, FileInfo)> {
+    let budget = Budget::new(*limits);
+    let length = uri::regular_file_length(path).map_err(|problem| Fault::Unreadable(io::Error::other(problem)))?;
+    budget.charge(length, 1, || "the file".into())?;
+    let bytes = fs::read(path).map_err(Fault::Unreadable)?;
+    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let folder = path.parent().unwrap_or(Path::new("."));
+
+    let mut notices = Vec::new();
+    let container = container::open(&bytes, &mut notices)?;
+    charge_json(container.json, &budget)?;
+    let root = parse(container.json)?;
+    extensions::check(&root, &mut notices)?;
+    validate::check(&root)?;
+    let info = FileInfo::of(&root);
+    let document = Document::open(root, container.bin, folder, budget)?;
+
+    let mut scene = Scene { name, notices, ..Scene::default() };
+    read_materials(&document, folder, &mut scene)?;
+    let graph = Graph::new(&document.root, &mut scene.notices)?;
+    let held = instances::read(&document, &graph, &mut scene)?;
+    lights::read_lights(&document.root, &graph, &held, &document.budget, &mut scene)?;
+    lights::read_cameras(&document.root, &graph, &mut scene);
+    if scene.instances.is_empty() {
+        scene.notices.push("the scene has no triangles".into());
+    }
+    tidy(&mut scene.notices);
+    Ok((scene, info))
+}
+
+/// Parsed JSON is larger than its text: `{}` may become a material. Commas bound the other values.
+fn charge_json(json: &[u8], budget: &Budget) -> Result<()> {
+    let count = |byte: u8| json.iter().filter(|b| **b == byte).count() as u64;
+    budget.charge(count(b'{'), 1024, || "the JSON".into())?;
+    budget.charge(count(b','), size_of::<serde_json::Value>() as u64, || "the JSON".into())
+}
+
+fn parse(json: &[u8]) -> Result<Root> {
+    let mut deserializer = serde_json::Deserializer::from_slice(json);
+    let root = serde_path_to_error::deserialize(&mut deserializer).map_err(|e| {
+        let path = e.path().to_string();
+        let element = if path == "." { "the JSON".into() } else { path };
+        invalid(element, e.into_inner().to_string())
+    })?;
+    deserializer.end().map_err(|e| invalid("the JSON", e.to_string()))?;
+    Ok(root)
+}
+
+fn read_materials(document: &Document<'_>, folder: &Path, scene: &mut Scene) -> Result<()> {
+    let mut index = Vec::new();
+    for image in images::read(document, folder, &mut scene.notices)? {
+        index.push(image.map(|image| {
+            scene.images.push(image);
+            scene.images.len() - 1
+        }));
+    }
+    let (textures, index) = materials::textures(&document.root, &index, &mut scene.notices);
+    scene.textures = textures;
+    scene.materials = materials::materials(&document.root, &index, &mut scene.notices);
+    Ok(())
+}
+
+/// More notices than anybody reads are cut short.
+const MAX_NOTICES: usize = 50;
+
+fn tidy(notices: &mut Vec<String>) {
+    notices.iter_mut().for_each(|notice| *notice = one_line(notice));
+    let mut seen = rustc_hash::FxHashSet::default();
+    notices.retain(|notice| seen.insert(notice.clone()));
+    if notices.len() > MAX_NOTICES {
+        let more = notices.len() - MAX_NOTICES;
+        notices.truncate(MAX_NOTICES);
+        notices.push(format!("... and {more} more"));
+    }
+}
+
+impl FileInfo {
+    fn of(root: &Root) -> Self {
+        let animation =
+            |(i, a): (usize, &schema::Animation)| a.name.clone().unwrap_or_else(|| format!("animation {i}"));
+        let morphed = |mesh: &&schema::Mesh| mesh.primitives.iter().any(|p| !p.targets.is_empty());
+        Self {
+            version: root.asset.version.clone(),
+            generator: root.asset.generator.clone(),
+            extensions_used: root.extensions_used.clone(),
+            extensions_required: root.extensions_required.clone(),
+            animations: root.animations.iter().enumerate().map(animation).collect(),
+            skins: root.skins.len(),
+            meshes: root.meshes.len(),
+            nodes: root.nodes.len(),
+            morphed_meshes: root.meshes.iter().filter(morphed).count(),
+        }
+    }
+}

@@ -1,0 +1,8 @@
+//! Tests of the glTF reader through its public interface.
+
+mod build;
+mod files;
+mod geometry;
+mod hostile;
+mod nodes;
+mod posing;
