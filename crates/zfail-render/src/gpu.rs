@@ -48,15 +48,15 @@ impl Gpu {
     }
 
     async fn open(options: &GpuOptions) -> Result<Self, RenderError> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-            backends: options.backends,
-            ..wgpu::InstanceDescriptor::new_without_display_handle()
-        });
         // GL is a last resort, and looking for it makes some drivers write to the terminal.
         let stages = [options.backends & wgpu::Backends::PRIMARY, options.backends - wgpu::Backends::PRIMARY];
         let mut names = Vec::new();
         let mut failure = None;
         for backends in stages.into_iter().filter(|stage| !stage.is_empty()) {
+            let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+                backends,
+                ..wgpu::InstanceDescriptor::new_without_display_handle()
+            });
             let found = instance.enumerate_adapters(backends).await;
             names.extend(found.iter().map(|a| describe(&a.get_info())));
             let mut adapters: Vec<_> = found.into_iter().filter(|a| options.allows(&a.get_info())).collect();

@@ -43,7 +43,7 @@ pub struct MaterialUniform {
     pub roughness: f32,
     pub normal_scale: f32,
     pub occlusion_strength: f32,
-    pub normal_mapped: u32,
+    pub textured: u32,
     pub unlit: u32,
     pub pad: [u32; 2],
     /// Base colour, metallic-roughness, normal, occlusion, emissive.

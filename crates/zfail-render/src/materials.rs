@@ -29,7 +29,7 @@ fn bind_group(gpu: &Gpu, layouts: &Layouts, textures: &mut Textures<'_>, materia
         roughness: material.roughness,
         normal_scale: material.normal_scale,
         occlusion_strength: material.occlusion_strength,
-        normal_mapped: u32::from(material.normal_texture.is_some()),
+        textured: (0..).zip(&slots).map(|(bit, (slot, _))| u32::from(slot.is_some()) << bit).sum(),
         unlit: u32::from(material.unlit),
         pad: [0; 2],
         slots: slots.map(|(slot, _)| slot_uniform(slot)),

@@ -144,7 +144,7 @@ mod tests {
                 roughness,
                 normal_scale,
                 occlusion_strength,
-                normal_mapped,
+                textured,
                 unlit,
                 slots
             ]

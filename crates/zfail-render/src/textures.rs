@@ -5,7 +5,7 @@ use crate::mip_maps::Level;
 use std::collections::HashMap;
 use zfail_plan::scene::{Filter, Scene, TextureRef, Wrap};
 
-/// How many texels a sample may spread over on a surface seen at a grazing angle.
+/// How many texels a sample may spread over on a surface seen at a grazing angle, where there is hardware for it.
 const ANISOTROPY: u16 = 8;
 
 /// What a material slot binds.
@@ -45,7 +45,7 @@ impl<'a> Textures<'a> {
             upload(gpu, &image.name, level, srgb)
         });
         let key = (texture.wrap_u, texture.wrap_v, texture.mag, texture.min, texture.mipmaps);
-        let sampler = self.samplers.entry(key).or_insert_with(|| sampler(&gpu.device, key));
+        let sampler = self.samplers.entry(key).or_insert_with(|| sampler(gpu, key));
         (view.clone(), sampler.clone())
     }
 }
@@ -81,7 +81,7 @@ fn upload(gpu: &Gpu, name: &str, mut level: Level, srgb: bool) -> wgpu::TextureV
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-fn sampler(device: &wgpu::Device, (u, v, mag, min, mipmaps): SamplerKey) -> wgpu::Sampler {
+fn sampler(gpu: &Gpu, (u, v, mag, min, mipmaps): SamplerKey) -> wgpu::Sampler {
     let wrap = |wrap| match wrap {
         Wrap::Repeat => wgpu::AddressMode::Repeat,
         Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
@@ -92,7 +92,8 @@ fn sampler(device: &wgpu::Device, (u, v, mag, min, mipmaps): SamplerKey) -> wgpu
         Filter::Linear => wgpu::FilterMode::Linear,
     };
     let smooth = mipmaps && mag == Filter::Linear && min == Filter::Linear;
-    device.create_sampler(&wgpu::SamplerDescriptor {
+    let anisotropic = smooth && gpu.info.device_type != wgpu::DeviceType::Cpu;
+    gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         label: None,
         address_mode_u: wrap(u),
         address_mode_v: wrap(v),
@@ -100,7 +101,7 @@ fn sampler(device: &wgpu::Device, (u, v, mag, min, mipmaps): SamplerKey) -> wgpu
         min_filter: filter(min),
         mipmap_filter: if mipmaps { wgpu::MipmapFilterMode::Linear } else { wgpu::MipmapFilterMode::Nearest },
         lod_max_clamp: if mipmaps { 32.0 } else { 0.0 },
-        anisotropy_clamp: if smooth { ANISOTROPY } else { 1 },
+        anisotropy_clamp: if anisotropic { ANISOTROPY } else { 1 },
         ..Default::default()
     })
 }

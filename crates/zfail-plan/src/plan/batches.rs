@@ -123,8 +123,9 @@ fn cones(frame: &Frame<'_>, kind: &LightKind, pairs: &[Pair]) -> (Vec<Item>, Vec
 
 /// Halves the sequence of items until no ray crosses more than [`FOLDED`] of any run, between casters where possible.
 fn halve(items: &[Item], cones: &[Cone], shape: &stack::Frame, out: &mut Vec<std::ops::Range<usize>>) {
-    let mut stack = vec![0..items.len()];
-    while let Some(range) = stack.pop() {
+    let mut rest = Vec::new();
+    let mut next = Some(0..items.len());
+    while let Some(range) = next.take().or_else(|| rest.pop()) {
         if stack::is_within(&cones[range.clone()], shape, FOLDED) {
             out.push(range);
             continue;
@@ -144,7 +145,7 @@ fn halve(items: &[Item], cones: &[Cone], shape: &stack::Frame, out: &mut Vec<std
             (Some(i), None) | (None, Some(i)) => i,
             (None, None) => middle,
         };
-        stack.push(cut..range.end);
-        stack.push(range.start..cut);
+        rest.push(cut..range.end);
+        next = Some(range.start..cut);
     }
 }

@@ -50,10 +50,7 @@ impl Clusters {
         }
         let compass: Vec<DVec3> = compass();
         let mut cluster_of_compass = [None; 26];
-        for t in 0..weights.len() {
-            if weights[t] == 0 {
-                continue;
-            }
+        for (t, weight) in weights.iter_mut().enumerate().filter(|(_, weight)| **weight != 0) {
             let d = directions(t);
             let best = (0..compass.len()).max_by(|&i, &j| spread(compass[i], d).total_cmp(&spread(compass[j], d)));
             let best = best.filter(|&i| spread(compass[i], d) > SPREAD);
@@ -70,7 +67,7 @@ impl Clusters {
                     let normal = (b - a).cross(c - a).normalize_or_zero();
                     let normal = normal * normal.dot(a - origin).signum();
                     if spread(normal, d) < EDGE_ON || self.normals.len() == usize::from(u16::MAX) {
-                        weights[t] = 0;
+                        *weight = 0;
                         continue;
                     }
                     self.push(normal)

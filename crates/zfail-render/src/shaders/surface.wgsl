@@ -23,8 +23,8 @@ struct Material {
     roughness: f32,
     normal_scale: f32,
     occlusion_strength: f32,
-    // 1 where there is a normal texture.
-    normal_mapped: u32,
+    // Which slots have textures, a bit each in the order of the slots.
+    textured: u32,
     // 1 where base colour is shown as it is.
     unlit: u32,
     base_color_slot: Slot,
@@ -110,17 +110,42 @@ fn unit_or(v: vec3<f32>, fallback: vec3<f32>) -> vec3<f32> {
     return fallback;
 }
 
-// All texture reads and derivatives of a surface, so they stand in uniform control flow.
+const BASE_COLOR: u32 = 1u;
+const METALLIC_ROUGHNESS: u32 = 2u;
+const NORMAL: u32 = 4u;
+const OCCLUSION: u32 = 8u;
+const EMISSIVE: u32 = 16u;
+
+// One draw has one material, so this is uniform control flow.
+fn has(slot: u32) -> bool {
+    return (material.textured & slot) != 0u;
+}
+
 fn surface(in: Fragment, front: bool) -> Surface {
-    let base_color = textureSample(base_color_texture, base_color_sampler, slot_uv(material.base_color_slot, in.uv))
-        * material.base_color * in.color;
-    let metallic_roughness = textureSample(
-        metallic_roughness_texture, metallic_roughness_sampler, slot_uv(material.metallic_roughness_slot, in.uv),
-    );
+    var base_color = material.base_color * in.color;
+    if has(BASE_COLOR) {
+        base_color *= textureSample(base_color_texture, base_color_sampler, slot_uv(material.base_color_slot, in.uv));
+    }
+    var metallic_roughness = vec2<f32>(material.metallic, material.roughness);
+    if has(METALLIC_ROUGHNESS) {
+        let uv = slot_uv(material.metallic_roughness_slot, in.uv);
+        metallic_roughness *= textureSample(metallic_roughness_texture, metallic_roughness_sampler, uv).bg;
+    }
     let normal_uv = slot_uv(material.normal_slot, in.uv);
-    let normal_texel = textureSample(normal_texture, normal_sampler, normal_uv).xyz * 2.0 - 1.0;
-    let occlusion = textureSample(occlusion_texture, occlusion_sampler, slot_uv(material.occlusion_slot, in.uv)).r;
-    let emissive = textureSample(emissive_texture, emissive_sampler, slot_uv(material.emissive_slot, in.uv)).rgb;
+    var normal_texel = vec3<f32>(0.0, 0.0, 1.0);
+    if has(NORMAL) {
+        normal_texel = textureSample(normal_texture, normal_sampler, normal_uv).xyz * 2.0 - 1.0;
+    }
+    var occlusion = 1.0;
+    if has(OCCLUSION) {
+        let uv = slot_uv(material.occlusion_slot, in.uv);
+        let texel = textureSample(occlusion_texture, occlusion_sampler, uv).r;
+        occlusion += material.occlusion_strength * (texel - 1.0);
+    }
+    var emissive = material.emissive;
+    if has(EMISSIVE) {
+        emissive *= textureSample(emissive_texture, emissive_sampler, slot_uv(material.emissive_slot, in.uv)).rgb;
+    }
     let position_dx = dpdx(in.position);
     let position_dy = dpdy(in.position);
     let uv_dx = dpdx(normal_uv);
@@ -132,16 +157,16 @@ fn surface(in: Fragment, front: bool) -> Surface {
     var out: Surface;
     out.albedo = base_color.rgb;
     out.alpha = base_color.a;
-    out.metallic = clamp(metallic_roughness.b * material.metallic, 0.0, 1.0);
-    out.roughness = clamp(metallic_roughness.g * material.roughness, 0.0, 1.0);
-    out.occlusion = 1.0 + material.occlusion_strength * (occlusion - 1.0);
-    out.emissive = emissive * material.emissive * frame.pre_exposure;
+    out.metallic = clamp(metallic_roughness.x, 0.0, 1.0);
+    out.roughness = clamp(metallic_roughness.y, 0.0, 1.0);
+    out.occlusion = occlusion;
+    out.emissive = emissive * frame.pre_exposure;
     out.geometric_normal = select(-flat_normal, flat_normal, dot(flat_normal, eye) >= 0.0);
 
     let side = select(-1.0, 1.0, front);
     let outward = side * out.geometric_normal;
     var normal = unit_or(in.normal, outward);
-    if material.normal_mapped == 1u {
+    if has(NORMAL) {
         var tangent = in.tangent;
         var bitangent = in.bitangent;
         if dot(tangent, tangent) < 1e-20 {

@@ -4,7 +4,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 use zfail_plan::scene::{
-    AlphaMode, Camera, Filter, Image, Instance, Light, LightKind, Material, Mesh, Scene, Texture, TextureRef, Wrap,
+    Camera, Filter, Image, Instance, Light, LightKind, Material, Mesh, Scene, Texture, TextureRef, Wrap,
 };
 use zfail_plan::view::Projection;
 
@@ -40,13 +40,6 @@ impl SceneBuilder {
             roughness,
             ..Material::default()
         })
-    }
-
-    /// Adds a metal of one colour, `0xRRGGBB` in sRGB.
-    pub fn metal(&mut self, name: &str, color: u32, roughness: f32) -> usize {
-        let index = self.matte(name, color, roughness);
-        self.0.materials[index].metallic = 1.0;
-        index
     }
 
     /// Adds a dielectric that shows `image` once every `tile` metres.
@@ -102,15 +95,28 @@ impl SceneBuilder {
         self.place(name, mesh, world_from_object)
     }
 
+    /// Adds a box between two corners.
+    pub fn block(&mut self, name: &str, min: [f64; 3], max: [f64; 3], material: usize) {
+        let (min, max) = (DVec3::from(min), DVec3::from(max));
+        let center = 0.5 * (min + max);
+        let mesh = shapes::cuboid(min - center, max - center);
+        self.add(name, mesh, material, DAffine3::from_translation(center));
+    }
+
     /// Adds a light; `color` is sRGB `0xRRGGBB`, `intensity` candela or lux.
     pub fn light(&mut self, name: &str, kind: LightKind, color: u32, intensity: f32) {
         let light = Light { name: name.to_owned(), kind, color: linear(color), intensity, excluded: Vec::new() };
         self.0.lights.push(light);
     }
 
+    /// A point light without a body.
+    pub fn point(&mut self, name: &str, position: DVec3, color: u32, candela: f32) {
+        self.light(name, LightKind::Point { position, range: f64::INFINITY }, color, candela);
+    }
+
     /// A point light in a small glowing ball that casts no shadow.
     pub fn bulb(&mut self, name: &str, position: DVec3, radius: f64, color: u32, candela: f32) {
-        self.light(name, LightKind::Point { position, range: f64::INFINITY }, color, candela);
+        self.point(name, position, color, candela);
         let glow = self.glow(name, color, 4.0);
         let ball = self.add(name, shapes::ico_sphere(radius, 3, true), glow, DAffine3::from_translation(position));
         self.0.instances[ball].casts_shadow = false;
@@ -131,7 +137,6 @@ impl SceneBuilder {
             base_color: [0.0, 0.0, 0.0, 1.0],
             metallic: 0.0,
             emissive: linear(color).map(|c| c * radiance),
-            alpha: AlphaMode::Opaque,
             ..Material::default()
         })
     }

@@ -3,7 +3,7 @@
 
 use glam::{DAffine3, DVec2, DVec3};
 use std::f64::consts::PI;
-use zfail_plan::scene::{Mesh, Scene};
+use zfail_plan::scene::{LightKind, Mesh, Scene};
 
 use super::builder::{SceneBuilder, at};
 use super::pattern;
@@ -13,7 +13,7 @@ use super::shapes::{Slab, cuboid, ico_sphere, painted};
 const LIGHT: DVec3 = DVec3::new(0.75, 4.3, -1.2);
 
 pub(super) fn scene() -> Scene {
-    let mut b = SceneBuilder::new("cathedral", [0.02, 0.024, 0.036], [0.02, 0.035, 0.075]);
+    let mut b = SceneBuilder::new("cathedral", [0.03, 0.036, 0.054], [0.05, 0.085, 0.19]);
     nave(&mut b);
     let stone = b.textured(pattern::bricks("seating", [2, 4], 0xc2b49c, 0x7d7464), 2.0, 0.8);
     b.add("seating", seating(), stone, at(0.0, 0.0, -1.5, 0.0));
@@ -27,7 +27,10 @@ pub(super) fn scene() -> Scene {
     }
     let blue = b.matte("sphere", 0x6f93b8, 0.3);
     b.add("sphere", ico_sphere(0.75, 5, true), blue, at(2.7, 4.0, -2.4, 0.0));
-    b.bulb("light", LIGHT, 0.07, 0xffe0b5, 75.0);
+    b.bulb("light", LIGHT, 0.07, 0xffdcab, 80.0);
+
+    let direction = DVec3::new(-0.62, -0.55, -0.28).normalize();
+    b.light("moon", LightKind::Directional { direction }, 0x8fb0ff, 0.55);
 
     let wood = b.matte("wood", 0xc79a6b, 0.5);
     for (name, pose, x, z, turn) in [
@@ -38,7 +41,7 @@ pub(super) fn scene() -> Scene {
         b.add(name, figure(&pose), wood, at(x, 0.0, z, turn));
     }
     b.camera("hall", DVec3::new(2.6, 2.3, 9.6), DVec3::new(-0.1, 3.35, -2.0), 58.0);
-    b.camera("behind the grid", DVec3::new(-3.75, 3.75, -1.75), LIGHT + DVec3::Y * 0.05, 62.0);
+    b.camera("behind the grid", DVec3::new(-4.3, 3.6, -2.1), LIGHT + DVec3::Y * 0.05, 62.0);
     b.finish()
 }
 
@@ -48,8 +51,8 @@ fn nave(b: &mut SceneBuilder) {
     let floor = b.textured(pattern::tiles("floor", 2, [0xa79c8c, 0x6f675e], 0x3c3833), 2.0, 0.4);
     let ashlar = b.textured(pattern::bricks("ashlar", [3, 6], 0xb3a891, 0x776e60), 3.0, 0.85);
     let marble = b.textured(pattern::stone("marble", 0xcfc5b1, 0.18), 2.0, 0.6);
-    b.add("floor", cuboid(DVec3::new(-8.5, -0.4, -12.5), DVec3::new(8.5, 0.0, 13.5)), floor, here);
-    b.add("ceiling", cuboid(DVec3::new(-8.5, 10.0, -12.5), DVec3::new(8.5, 10.4, 13.5)), ashlar, here);
+    b.block("floor", [-8.5, -0.4, -12.5], [8.5, 0.0, 13.5], floor);
+    b.block("ceiling", [-8.5, 10.0, -12.5], [8.5, 10.4, 13.5], ashlar);
 
     let window = Arch { span: 1.5, sill: 2.2, spring: 5.2, pointed: true };
     let side = b.mesh("side wall", painted(arcade(6, window, 2.35, 10.1, 0.5), ashlar));

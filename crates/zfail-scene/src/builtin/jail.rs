@@ -16,10 +16,10 @@ pub(super) fn scene() -> Scene {
     let iron = b.matte("iron", 0x54575c, 0.4);
 
     // The corridor runs along x on the camera's side of the bars, the cells lie behind them.
-    b.add("floor", cuboid(DVec3::new(-7.0, -0.3, -3.6), DVec3::new(7.0, 0.0, 3.0)), paving, here);
-    b.add("ceiling", cuboid(DVec3::new(-7.0, 2.9, -3.6), DVec3::new(7.0, 3.2, 3.0)), bricks, here);
-    b.add("back wall", cuboid(DVec3::new(-7.0, -0.1, -3.6), DVec3::new(7.0, 3.0, -3.3)), bricks, here);
-    b.add("corridor wall", cuboid(DVec3::new(-7.0, -0.1, 2.4), DVec3::new(7.0, 3.0, 2.7)), bricks, here);
+    b.block("floor", [-7.0, -0.3, -3.6], [7.0, 0.0, 3.0], paving);
+    b.block("ceiling", [-7.0, 2.9, -3.6], [7.0, 3.2, 3.0], bricks);
+    b.block("back wall", [-7.0, -0.1, -3.6], [7.0, 3.0, -3.3], bricks);
+    b.block("corridor wall", [-7.0, -0.1, 2.4], [7.0, 3.0, 2.7], bricks);
     for x in [-6.6, 6.6] {
         b.add("end wall", moved(block(DVec3::new(0.3, 3.1, 6.4)), &at(x, -0.1, -0.4, 0.0)), bricks, here);
     }

@@ -14,7 +14,7 @@ pub(super) fn scene() -> Scene {
     let floor = b.textured(pattern::planks("floor", 6, 0x9d8468, 0x3c3026), 1.6, 0.5);
     let wall = b.textured(pattern::stone("wall", 0xa7b0b8, 0.1), 2.0, 0.9);
     let here = DAffine3::IDENTITY;
-    b.add("floor", cuboid(DVec3::new(-5.0, -0.3, -2.6), DVec3::new(5.0, 0.0, 4.5)), floor, here);
+    b.block("floor", [-5.0, -0.3, -2.6], [5.0, 0.0, 4.5], floor);
     // One sheet without thickness, as walls of game levels are.
     b.add("wall", sheet(1, 1, |i, j| DVec3::new(10.0 * i as f64 - 5.0, 4.0 * j as f64, -2.6)), wall, here);
 

@@ -17,9 +17,9 @@ pub(super) fn scene() -> Scene {
     let soil = b.textured(pattern::stone("soil", 0x8a6a4c, 0.3), 2.0, 0.95);
     let grass = b.textured(pattern::grass("grass", 0x76a045, 0xa4ad55), 3.0, 0.95);
     let paving = b.textured(pattern::bricks("paving", [2, 4], 0xcabfa9, 0x8d8371), 1.6, 0.8);
-    b.add("soil", cuboid(DVec3::new(-5.0, -1.2, -5.0), DVec3::new(5.0, -0.25, 5.0)), soil, here);
-    b.add("lawn", cuboid(DVec3::new(-5.1, -0.25, -5.1), DVec3::new(5.1, 0.0, 5.1)), grass, here);
-    b.add("path", cuboid(DVec3::new(0.3, -0.1, -0.2), DVec3::new(1.7, 0.03, 5.0)), paving, here);
+    b.block("soil", [-5.0, -1.2, -5.0], [5.0, -0.25, 5.0], soil);
+    b.block("lawn", [-5.1, -0.25, -5.1], [5.1, 0.0, 5.1], grass);
+    b.block("path", [0.3, -0.1, -0.2], [1.7, 0.03, 5.0], paving);
 
     house(&mut b);
     garden(&mut b);

@@ -12,10 +12,10 @@ pub(super) fn scene() -> Scene {
     let mut b = SceneBuilder::new("room", [0.03, 0.03, 0.038], [0.005, 0.005, 0.008]);
     walls(&mut b);
     contents(&mut b);
-    b.bulb("red light", DVec3::new(-2.3, 2.7, 0.4), 0.07, 0xff5a48, 26.0);
-    b.bulb("green light", DVec3::new(1.6, 3.0, 2.1), 0.07, 0x5cff6e, 26.0);
-    b.bulb("blue light", DVec3::new(2.9, 2.5, -1.5), 0.07, 0x5a7bff, 42.0);
-    b.camera("camera", DVec3::new(-5.3, 2.3, 3.9), DVec3::new(0.9, 1.0, -0.9), 58.0);
+    b.bulb("red light", DVec3::new(-2.3, 2.7, 0.4), 0.07, 0xff6a55, 26.0);
+    b.bulb("green light", DVec3::new(1.6, 3.0, 2.1), 0.07, 0x74ff86, 24.0);
+    b.bulb("blue light", DVec3::new(2.9, 2.5, -1.5), 0.07, 0x6a8dff, 40.0);
+    b.camera("camera", DVec3::new(-5.5, 2.25, 2.1), DVec3::new(0.6, 1.0, -0.85), 58.0);
     b.finish()
 }
 
@@ -24,14 +24,14 @@ fn walls(b: &mut SceneBuilder) {
     let tiles = b.textured(pattern::tiles("tiles", 4, [0xb9b2a6, 0x8d867c], 0x4a453f), 2.4, 0.35);
     let bricks = b.textured(pattern::bricks("bricks", [4, 8], 0xa89a8c, 0x5f574f), 1.6, 0.85);
     let timber = b.textured(pattern::planks("timber", 4, 0x8a6848, 0x20160e), 1.5, 0.7);
-    b.add("floor", cuboid(DVec3::new(-6.3, -0.3, -4.8), DVec3::new(6.3, 0.0, 4.8)), tiles, here);
-    b.add("ceiling", cuboid(DVec3::new(-6.3, 4.2, -4.8), DVec3::new(6.3, 4.5, 4.8)), timber, here);
-    b.add("west wall", cuboid(DVec3::new(-6.3, -0.1, -4.8), DVec3::new(-6.0, 4.3, 4.8)), bricks, here);
-    b.add("south wall", cuboid(DVec3::new(-6.3, -0.1, 4.5), DVec3::new(6.3, 4.3, 4.8)), bricks, here);
-    b.add("east wall", cuboid(DVec3::new(6.0, -0.1, -4.8), DVec3::new(6.3, 4.3, 4.8)), bricks, here);
+    b.block("floor", [-6.3, -0.3, -4.8], [6.3, 0.0, 4.8], tiles);
+    b.block("ceiling", [-6.3, 4.2, -4.8], [6.3, 4.5, 4.8], timber);
+    b.block("west wall", [-6.3, -0.1, -4.8], [-6.0, 4.3, 4.8], bricks);
+    b.block("south wall", [-6.3, -0.1, 4.5], [6.3, 4.3, 4.8], bricks);
+    b.block("east wall", [6.0, -0.1, -4.8], [6.3, 4.3, 4.8], bricks);
     let door = Arch { span: 1.8, sill: 0.0, spring: 1.9, pointed: false };
     b.add("north wall", arcade(3, door, 2.16, 4.3, 0.3), bricks, at(0.0, -0.05, -4.65, 0.0));
-    b.add("niche", cuboid(DVec3::new(-6.3, -0.1, -5.6), DVec3::new(6.3, 4.3, -5.3)), bricks, here);
+    b.block("niche", [-6.3, -0.1, -5.6], [6.3, 4.3, -5.3], bricks);
     let beam = b.mesh("beam", super::shapes::painted(block(DVec3::new(0.26, 0.34, 9.2)), timber));
     for x in [-4.5, -1.5, 1.5, 4.5] {
         b.place("beam", beam, at(x, 3.9, 0.0, 0.0));
@@ -60,7 +60,7 @@ fn contents(b: &mut SceneBuilder) {
         b.place("crate", unit, at(x, y, z, turn) * DAffine3::from_scale(DVec3::splat(size)));
     }
 
-    let bronze = b.metal("bronze", 0xc9a06a, 0.32);
+    let bronze = b.matte("bronze", 0xd8b06a, 0.3);
     b.add("pedestal", block(DVec3::new(0.9, 0.75, 0.9)), stone, at(1.25, 0.0, -0.9, 12.0));
     b.add(
         "statue",

@@ -14,15 +14,15 @@ const LIGHTS: u32 = 12;
 pub(super) fn scene() -> Scene {
     let mut b = SceneBuilder::new("soft", [0.05, 0.055, 0.07], [0.02, 0.02, 0.03]);
     let here = DAffine3::IDENTITY;
-    let floor = b.textured(pattern::planks("floor", 5, 0xb08a62, 0x35261a), 1.0, 0.5);
+    let floor = b.textured(pattern::planks("floor", 5, 0xb08a62, 0x5a4330), 1.0, 0.5);
     let wall = b.textured(pattern::stone("wall", 0xb9c3c4, 0.1), 2.0, 0.9);
-    b.add("floor", cuboid(DVec3::new(-3.5, -0.2, -2.2), DVec3::new(3.5, 0.0, 3.5)), floor, at(0.0, 0.0, 0.0, 0.0));
-    b.add("wall", cuboid(DVec3::new(-3.5, -0.2, -2.4), DVec3::new(3.5, 3.2, -2.2)), wall, here);
-    b.add("left wall", cuboid(DVec3::new(-3.7, -0.2, -2.3), DVec3::new(-3.5, 3.2, 3.5)), wall, here);
+    b.block("floor", [-3.5, -0.2, -2.2], [3.5, 0.0, 3.5], floor);
+    b.block("wall", [-3.5, -0.2, -2.4], [3.5, 3.2, -2.2], wall);
+    b.block("left wall", [-3.7, -0.2, -2.3], [-3.5, 3.2, 3.5], wall);
     furniture(&mut b);
     still_life(&mut b);
     lamp(&mut b, DVec3::new(1.75, 2.5, 1.15), 0.3, 0xffe2bd, 46.0);
-    b.camera("camera", DVec3::new(0.55, 1.75, 2.75), DVec3::new(-0.15, 0.72, -0.35), 46.0);
+    b.camera("camera", DVec3::new(0.75, 1.7, 2.1), DVec3::new(-0.32, 0.78, -0.45), 42.0);
     b.finish()
 }
 
@@ -72,7 +72,7 @@ fn still_life(b: &mut SceneBuilder) {
     const TABLE: f64 = 0.765;
     let glaze = b.matte("white glaze", 0xe9e6df, 0.25);
     let cobalt = b.matte("cobalt glaze", 0x31528f, 0.22);
-    let copper = b.metal("copper", 0xd98f6c, 0.28);
+    let copper = b.matte("copper", 0xd98f6c, 0.28);
     b.add("vase", vase(0.46), cobalt, at(-0.62, TABLE, -0.6, 0.0));
     b.add("bowl", bowl(0.2), glaze, at(0.02, TABLE, -0.42, 0.0));
     b.add("ring", torus(0.11, 0.032, 56, 18), copper, at(0.5, TABLE + 0.032, -0.38, 0.0));

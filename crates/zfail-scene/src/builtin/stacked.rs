@@ -14,8 +14,8 @@ pub(super) fn scene() -> Scene {
     let here = DAffine3::IDENTITY;
     let floor = b.textured(pattern::tiles("floor", 2, [0xc2bcb2, 0xaea79c], 0x6f6a62), 2.4, 0.45);
     let wall = b.textured(pattern::stone("wall", 0x8d949c, 0.1), 2.5, 0.9);
-    b.add("floor", cuboid(DVec3::new(-6.0, -0.3, -3.2), DVec3::new(6.0, 0.0, 6.0)), floor, here);
-    b.add("wall", cuboid(DVec3::new(-6.0, -0.3, -3.5), DVec3::new(6.0, 6.0, -3.2)), wall, here);
+    b.block("floor", [-6.0, -0.3, -3.2], [6.0, 0.0, 6.0], floor);
+    b.block("wall", [-6.0, -0.3, -3.5], [6.0, 6.0, -3.2], wall);
 
     let paper = b.matte("paper", 0xffffff, 0.7);
     let paper = b.double_sided(paper);

@@ -15,8 +15,8 @@ pub(super) fn scene() -> Scene {
     let boards = b.textured(pattern::planks("boards", 8, 0x9a7450, 0x2b1d12), 1.6, 0.4);
     let velvet = b.matte("velvet", 0x9c2f34, 0.95);
     let screen = b.textured(pattern::stone("screen", 0xbfc3c9, 0.06), 3.0, 0.9);
-    b.add("stage", cuboid(DVec3::new(-4.6, -0.9, -3.0), DVec3::new(4.6, 0.0, 2.2)), boards, here);
-    b.add("screen", cuboid(DVec3::new(-4.6, -0.5, -3.2), DVec3::new(4.6, 5.0, -3.0)), screen, here);
+    b.block("stage", [-4.6, -0.9, -3.0], [4.6, 0.0, 2.2], boards);
+    b.block("screen", [-4.6, -0.5, -3.2], [4.6, 5.0, -3.0], screen);
     for side in [-1.0, 1.0] {
         b.add("curtain", curtain(2.0, 4.9), velvet, at(3.55 * side, 0.0, 0.7 - 0.2 * side, -14.0 * side));
     }

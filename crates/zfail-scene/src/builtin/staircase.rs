@@ -22,8 +22,8 @@ pub(super) fn scene() -> Scene {
     let ashlar = b.textured(pattern::bricks("ashlar", [3, 6], 0xa4937c, 0x5f5548), 2.4, 0.85);
     let paving = b.textured(pattern::tiles("paving", 4, [0x9f978b, 0x87806f], 0x4b463e), 3.0, 0.6);
     b.add("stairs", stairs(STEPS, RISE, RUN, WIDTH), tread, here);
-    b.add("court", cuboid(DVec3::new(-7.0, -0.4, -0.2), DVec3::new(7.0, 0.0, 8.0)), paving, here);
-    b.add("landing", cuboid(DVec3::new(-3.0, -0.4, far - 4.0), DVec3::new(3.0, top, far + 0.001)), tread, here);
+    b.block("court", [-7.0, -0.4, -0.2], [7.0, 0.0, 8.0], paving);
+    b.block("landing", [-3.0, -0.4, far - 4.0], [3.0, top, far + 0.001], tread);
     let gate = Arch { span: 1.8, sill: 0.0, spring: 2.2, pointed: false };
     b.add("gate", arcade(3, gate, 0.6, 4.2, 0.5), ashlar, at(0.0, top - 0.01, far - 2.6, 0.0));
 

@@ -14,7 +14,7 @@ pub(super) fn scene() -> Scene {
     b.light("sun", LightKind::Directional { direction }, 0xffd9a8, 3.4);
 
     let grass = b.textured(pattern::grass("grass", 0x5d7d3a, 0x9a9350), 4.0, 0.95);
-    b.add("ground", cuboid(DVec3::new(-150.0, -1.0, -150.0), DVec3::new(150.0, 0.0, 150.0)), grass, DAffine3::IDENTITY);
+    b.block("ground", [-150.0, -1.0, -150.0], [150.0, 0.0, 150.0], grass);
     ruin(&mut b);
     garden(&mut b);
     b.camera("with the light", DVec3::new(6.8, 2.6, -10.5), DVec3::new(-0.4, 1.9, 0.6), 50.0);
