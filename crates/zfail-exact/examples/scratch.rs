@@ -26,6 +26,12 @@ fn main() {
         };
         f.write_all(&c).unwrap();
     }
+    if let (Ok(x), Ok(y)) = (std::env::var("X"), std::env::var("Y")) {
+        let (x, y, l): (usize, usize, usize) = (x.parse().unwrap(), y.parse().unwrap(), a[3].parse().unwrap());
+        let gpu = zfail_render::Gpu::new(&Default::default()).unwrap();
+        let im = bench::images(&gpu, &recipe, &Default::default()).unwrap();
+        println!("rendered mask {} count {} truth {:?}", im.rendered.shadow[l][y * 256 + x], im.rendered.stencil[l][y * 256 + x], im.truths[l].pixels[y * 256 + x]);
+    }
     println!("{:?}\n{:?}", recipe.lights, recipe.view);
     for p in &recipe.parts {
         println!("{:?} {:?}", p.shape, p.pose);
