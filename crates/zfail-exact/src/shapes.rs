@@ -75,7 +75,7 @@ impl Shape {
                 triangles.retain(|t| t.iter().all(|&v| positions[v as usize].y < 1e-6));
             }
             Self::Tube(n) => {
-                build.grid(n, 1, [true, false], |u, v| DVec3::new((TAU * u).cos(), 2.0 * v - 1.0, (TAU * u).sin()))
+                build.grid(n, 1, [true, false], |u, v| DVec3::new((TAU * u).cos(), 2.0 * v - 1.0, (TAU * u).sin()));
             }
             Self::Torus(n) => build.grid(2 * n, n, [true, true], |u, v| {
                 let (outer, inner) = (TAU * u, TAU * v);

@@ -1,11 +1,11 @@
 //! Random scenes of every kind: no pixel may be wrong.
 //!
-//! `ZFAIL_SCENES` sets how many scenes in total (default 320), `ZFAIL_SEED` the first seed (default 1),
+//! The techniques take turns. `ZFAIL_SCENES` sets how many scenes in total (default 320), `ZFAIL_SEED` the first seed (default 1),
 //! `ZFAIL_KIND` limits them to one kind, `ZFAIL_SIZE=WxH` sets the size of the images.
 
 use std::{env, fmt::Write as _, str::FromStr};
 use zfail_exact::{bench, kinds::Kind, recipe::Recipe, shrink::shrink, tally::Tally};
-use zfail_render::{Gpu, GpuOptions, Settings};
+use zfail_render::{Gpu, GpuOptions, Settings, Technique};
 
 fn setting<T: FromStr>(name: &str, default: T) -> T {
     env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
@@ -20,7 +20,6 @@ fn size() -> [u32; 2] {
 #[test]
 fn no_pixel_is_wrong() {
     let gpu = Gpu::new(&GpuOptions::default()).expect("a graphics adapter");
-    let settings = Settings::default();
     let only: String = setting("ZFAIL_KIND", String::new());
     let kinds: Vec<Kind> = Kind::ALL.into_iter().filter(|k| only.is_empty() || format!("{k:?}") == only).collect();
     let scenes: u64 = setting("ZFAIL_SCENES", 320);
@@ -31,6 +30,8 @@ fn no_pixel_is_wrong() {
         let (mut mask, mut count) = (Tally::default(), Tally::default());
         for seed in first..first + scenes.div_ceil(kinds.len() as u64) {
             let recipe = kind.recipe(seed, size());
+            let technique = Technique::ALL[(seed % Technique::ALL.len() as u64) as usize];
+            let settings = Settings { technique, ..Settings::default() };
             let comparisons = bench::images(&gpu, &recipe, &settings).and_then(|i| i.compare());
             let comparisons = comparisons.unwrap_or_else(|e| panic!("{kind:?} seed {seed}: {e}"));
             for comparison in &comparisons {
@@ -63,7 +64,8 @@ fn no_pixel_is_wrong() {
 fn describe(failures: &mut String, gpu: &Gpu, recipe: Recipe, settings: &Settings) {
     let compare = |r: &Recipe| bench::images(gpu, r, settings).and_then(|i| i.compare()).unwrap_or_default();
     let least = shrink(recipe, |r| compare(r).iter().any(bench::Comparison::failed));
-    let _ = writeln!(failures, "\n{:?} seed {}, size {:?}: {least:#?}", least.kind, least.seed, least.view.size);
+    let Recipe { kind, seed, view, .. } = &least;
+    let _ = writeln!(failures, "\n{kind:?} seed {seed}, {:?}, {}: {least:#?}", view.size, settings.technique);
     for comparison in compare(&least).iter().filter(|c| c.failed()) {
         let few = |wrong: &[zfail_oracle::Wrong]| format!("{} wrong: {:?}", wrong.len(), &wrong[..wrong.len().min(4)]);
         let (mask, count) = (few(&comparison.mask.wrong), few(&comparison.count.wrong));

@@ -64,7 +64,7 @@ impl AmbientPass {
                 cleared(&views[0], [0.0; 4]),
                 cleared(&views[1], [0.0; 4]),
                 cleared(&views[2], [0.0; 4]),
-                cleared(&views[3], [targets::NO_SURFACE.into(); 4]),
+                cleared(&views[3], targets::NO_SURFACE.to_le_bytes().map(f64::from)),
                 cleared(&views[4], [r, g, b, 0.0]),
             ],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {

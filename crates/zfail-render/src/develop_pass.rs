@@ -1,6 +1,6 @@
 //! From radiance to a picture: exposure, tone mapping, the mean of samples, display encoding.
 
-use crate::layouts::{bind, entry, texture, uniform};
+use crate::layouts::{BYTES, FLOATS, bind, entry, texture, uniform};
 use crate::pipeline::{Recipe, cleared};
 use crate::targets::{HDR, LDR, Targets, view};
 use crate::{Gpu, shader};
@@ -18,8 +18,8 @@ impl DevelopPass {
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("develop"),
             entries: &[
-                entry(0, fragment, texture(false, samples > 1)),
-                entry(1, fragment, texture(false, samples > 1)),
+                entry(0, fragment, texture(FLOATS, samples > 1)),
+                entry(1, fragment, texture(BYTES, samples > 1)),
                 entry(2, fragment, uniform::<f32>(false)),
             ],
         });

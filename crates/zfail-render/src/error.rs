@@ -38,6 +38,12 @@ pub enum RenderError {
     /// A sample count that cannot be rendered.
     #[error("{0} samples per pixel are not supported: use 1 or 4")]
     Samples(u32),
+    /// The interface cannot read what it has rendered with several samples.
+    #[error("several samples per pixel are not supported on {backend}: use 1, or another graphics interface")]
+    NoMultisampling {
+        /// The graphics interface.
+        backend: wgpu::Backend,
+    },
     /// A light index out of range.
     #[error("there is no light {index}: the scene has {count}, counted from 0")]
     UnknownLight {

@@ -1,6 +1,6 @@
 //! Exposure: one number that scales radiance, given by the caller or measured on the device.
 
-use crate::layouts::{bind, entry, texture};
+use crate::layouts::{BYTES, FLOATS, bind, entry, texture};
 use crate::settings::Exposure;
 use crate::targets::{Targets, view};
 use crate::{Gpu, shader};
@@ -32,8 +32,8 @@ impl ExposureMeter {
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("meter"),
             entries: &[
-                entry(0, compute, texture(false, samples > 1)),
-                entry(1, compute, texture(false, samples > 1)),
+                entry(0, compute, texture(FLOATS, samples > 1)),
+                entry(1, compute, texture(BYTES, samples > 1)),
                 entry(2, compute, storage),
                 entry(3, compute, storage),
             ],

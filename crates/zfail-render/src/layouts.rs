@@ -19,7 +19,7 @@ impl Layouts {
         };
         let mut material = vec![entry(0, wgpu::ShaderStages::FRAGMENT, uniform::<MaterialUniform>(false))];
         for slot in 0..5 {
-            material.push(entry(1 + 2 * slot, wgpu::ShaderStages::FRAGMENT, texture(true, false)));
+            material.push(entry(1 + 2 * slot, wgpu::ShaderStages::FRAGMENT, texture(FILTERED, false)));
             let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
             material.push(entry(2 + 2 * slot, wgpu::ShaderStages::FRAGMENT, sampler));
         }
@@ -39,10 +39,10 @@ impl Layouts {
             instance: create("instance", &[entry(0, wgpu::ShaderStages::VERTEX, uniform::<InstanceUniform>(true))]),
             material: create("material", &material),
             gbuffer: [false, true].map(|multisampled| {
-                let entries: [_; 4] = std::array::from_fn(|i| {
-                    entry(i as u32, wgpu::ShaderStages::FRAGMENT, texture(false, multisampled))
-                });
-                create("G-buffer", &entries)
+                let load = |binding, sample_type| {
+                    entry(binding, wgpu::ShaderStages::FRAGMENT, texture(sample_type, multisampled))
+                };
+                create("G-buffer", &[load(0, FLOATS), load(1, FLOATS), load(2, FLOATS), load(3, BYTES)])
             }),
         }
     }
@@ -64,12 +64,15 @@ pub fn uniform<T>(has_dynamic_offset: bool) -> wgpu::BindingType {
     }
 }
 
-pub fn texture(filterable: bool, multisampled: bool) -> wgpu::BindingType {
-    wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Float { filterable },
-        view_dimension: wgpu::TextureViewDimension::D2,
-        multisampled,
-    }
+/// Sampled textures.
+pub const FILTERED: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: true };
+/// Targets whose texels are loaded.
+pub const FLOATS: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: false };
+/// The depth target.
+pub const BYTES: wgpu::TextureSampleType = wgpu::TextureSampleType::Uint;
+
+pub fn texture(sample_type: wgpu::TextureSampleType, multisampled: bool) -> wgpu::BindingType {
+    wgpu::BindingType::Texture { sample_type, view_dimension: wgpu::TextureViewDimension::D2, multisampled }
 }
 
 /// Binds resources to 0, 1, 2...

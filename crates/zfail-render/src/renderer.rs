@@ -66,6 +66,10 @@ impl<'g> Renderer<'g> {
         if !matches!(samples, 1 | 4) {
             return Err(RenderError::Samples(samples));
         }
+        // wgpu attaches multisampled textures on GL in a way that only render-to-texture extensions know.
+        if samples > 1 && self.gpu.info.backend == wgpu::Backend::Gl {
+            return Err(RenderError::NoMultisampling { backend: self.gpu.info.backend });
+        }
         let chosen = self.scene.chosen(settings)?;
         let targets = reuse(&mut self.targets, self.gpu, &self.layouts, view.size, samples)?;
 

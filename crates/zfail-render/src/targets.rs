@@ -9,8 +9,9 @@ pub const ALBEDO: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 pub const SURFACE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Geometric normal.
 pub const GEOMETRIC_NORMAL: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
-/// Distance along the view axis. A colour target: depth textures that are sampled fail on some GL drivers.
-pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+/// Distance along the view axis, an `f32` as four bytes, least significant first. A colour target, since sampled depth
+/// textures fail on some GL drivers, and of bytes, since these have no multisampled `R32Float`.
+pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Uint;
 /// Sum of what the lights send to the eye.
 pub const RADIANCE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Exposed radiance.

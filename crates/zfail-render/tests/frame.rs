@@ -6,7 +6,7 @@ use support::{add, at, gpu, light, look, matt, picture, plain, square, sun, wall
 use zfail_render::zfail_plan::glam::{DAffine3, DVec3};
 use zfail_render::zfail_plan::scene::{LightKind, Material, Scene};
 use zfail_render::zfail_plan::view::{Projection, View};
-use zfail_render::{AovKind, RenderError, Renderer, Settings, Technique};
+use zfail_render::{AovKind, Gpu, GpuOptions, RenderError, Renderer, Settings, Technique};
 
 const SIZE: [u32; 2] = [64, 48];
 
@@ -227,4 +227,24 @@ fn background_pixels_are_not_lit() {
     let found = picture(&gpu, &scene, &look(DVec3::Z, DVec3::ZERO, SIZE), &plain());
     assert_eq!(at(&found, 0, 0), [0.0; 3]);
     assert!(at(&found, 32, 24)[0] > 1.0);
+}
+
+#[test]
+fn the_gl_backend_agrees() {
+    let options = GpuOptions { backends: wgpu::Backends::GL, ..GpuOptions::default() };
+    let (Some(gpu), Ok(gl)) = (gpu(), Gpu::new(&options)) else {
+        eprintln!("skipped: no GL adapter");
+        return;
+    };
+    let (scene, view) = hovering();
+    let view = View { size: [256, 192], ..view };
+    let kinds = [AovKind::Shadow, AovKind::Stencil];
+    let [one, other] = [&gpu, &gl].map(|gpu| {
+        let mut renderer = Renderer::new(gpu, &scene).expect("a renderer");
+        renderer.aovs(&view, &plain(), &kinds).expect("outputs")
+    });
+    let differ = |a: &[u8], b: &[u8]| a.iter().zip(b).filter(|(a, b)| a != b).count();
+    // Edges may fall to the other side of a pixel's centre.
+    assert!(differ(&one.shadow[0], &other.shadow[0]) < 40 && differ(&one.stencil[0], &other.stencil[0]) < 40);
+    assert!(one.shadow[0].iter().filter(|&&s| s == 0).count() > 100, "no shadow to compare");
 }

@@ -3,16 +3,16 @@
 mod support;
 
 use support::{add, at, close, gpu, light, look, matt, picture, plain, reflectance, square, sun, wall};
-use zfail_render::Renderer;
 use zfail_render::zfail_plan::glam::{DAffine3, DMat3, DVec3};
 use zfail_render::zfail_plan::scene::{AlphaMode, LightKind, Material, Scene};
-use zfail_render::zfail_plan::view::Projection;
+use zfail_render::zfail_plan::view::{Projection, View};
+use zfail_render::{Gpu, Renderer, Settings};
 
 const SIZE: [u32; 2] = [33, 33];
 /// Half floats hold eleven bits; normals and sums take a few of their last ones.
 const TOLERANCE: f64 = 4e-3;
 
-fn head_on() -> zfail_render::zfail_plan::view::View {
+fn head_on() -> View {
     look(DVec3::new(0.0, 0.0, 3.0), DVec3::ZERO, SIZE)
 }
 
@@ -107,19 +107,19 @@ fn unlit_colour_is_shown_as_it_is() {
     scene.ambient = [100.0; 3];
     for settings in [plain(), Default::default()] {
         for samples in [1, 4] {
-            let found = picture(&gpu, &scene, &head_on(), &zfail_render::Settings { samples, ..settings.clone() });
+            let found = picture(&gpu, &scene, &head_on(), &Settings { samples, ..settings.clone() });
             assert_eq!(found.rgba8[..4], [128, 255, 0, 255]);
         }
     }
 }
 
 /// A row of 8-bit codes across a wall that a point light grades smoothly.
-fn gradient(gpu: &zfail_render::Gpu, lights: u16) -> Vec<u8> {
+fn gradient(gpu: &Gpu, lights: u16) -> Vec<u8> {
     let mut scene = wall(matt([1.0; 3]));
     let lamp = LightKind::Point { position: DVec3::new(-2.0, 0.0, 1.5), range: f64::INFINITY };
     scene.lights = vec![light(lamp, 6.0 / f32::from(lights)); lights.into()];
-    let view = look(DVec3::new(0.0, 0.0, 3.0), DVec3::ZERO, [256, 2]);
-    picture(gpu, &scene, &view, &plain()).rgba8.chunks_exact(4).take(256).map(|p| p[0]).collect()
+    let view = look(DVec3::new(0.0, 0.0, 3.0), DVec3::ZERO, [256, 192]);
+    picture(gpu, &scene, &view, &plain()).rgba8.chunks_exact(4).skip(96 * 256).take(256).map(|p| p[0]).collect()
 }
 
 /// The greatest difference, in codes.
@@ -134,7 +134,8 @@ fn fifty_lights_equal_one_without_banding() {
     assert!(one.iter().max() > Some(&150) && one.iter().min() < Some(&80), "no gradient: {one:?}");
     // Half-float sums may lose half a unit in the last place each, if the device cuts instead of rounding: 1 % in all.
     assert!(difference(&one, &fifty) <= 2, "{one:?}\n{fifty:?}");
-    assert!(fifty.is_sorted_by(|a, b| a >= b), "banding: {fifty:?}");
+    // To the right of the brightest point.
+    assert!(fifty[20..].is_sorted_by(|a, b| a >= b), "banding: {fifty:?}");
 
     // An 8-bit sum of the same lights would fail both.
     let eight_bit: Vec<u8> = one.iter().map(|&c| (u32::from(c) / 50 * 50) as u8).collect();
@@ -183,7 +184,7 @@ fn blended_surfaces_cover_what_is_behind_them_from_back_to_front() {
     // Behind the wall: hidden.
     add(&mut scene, square(9.0), glass([9.0; 3], 0.5), DAffine3::from_translation(-DVec3::Z));
     for samples in [1, 4] {
-        let settings = zfail_render::Settings { samples, ..plain() };
+        let settings = Settings { samples, ..plain() };
         let found = at(&picture(&gpu, &scene, &head_on(), &settings), 16, 16);
         assert_eq!(found, [0.75 * 0.5, 0.25 * 0.5, 0.5], "at {samples} samples");
     }

@@ -2,9 +2,11 @@
 // the sample of a multisampled target, and the level, always 0, of another.
 
 @fragment
-fn illuminate(pixel: Pixel, @builtin(sample_index) sample: u32) -> @location(0) vec4<f32> {
+fn illuminate(pixel: Pixel, @builtin(sample_index) sample_index: u32) -> @location(0) vec4<f32> {
     let texel = vec2<i32>(pixel.position.xy);
-    let depth = textureLoad(depth_texture, texel, sample).r;
+    // As a level it has to be signed for GLSL.
+    let sample = i32(sample_index);
+    let depth = depth_from(textureLoad(depth_texture, texel, sample));
     let albedo = textureLoad(albedo_texture, texel, sample);
     if depth >= NO_SURFACE || albedo.a > 0.5 {
         return vec4<f32>(0.0);

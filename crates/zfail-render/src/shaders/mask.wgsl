@@ -2,7 +2,7 @@
 
 @fragment
 fn reached(pixel: Pixel) -> @location(0) f32 {
-    let depth = textureLoad(depth_texture, vec2<i32>(pixel.position.xy), 0).r;
+    let depth = depth_from(textureLoad(depth_texture, vec2<i32>(pixel.position.xy), 0));
     if depth >= NO_SURFACE || !reaches(lights[pixel.light], view_position(pixel.position.xy, depth)) {
         return 0.0;
     }
@@ -14,6 +14,6 @@ override BIT: f32 = 1.0;
 
 @fragment
 fn counted(pixel: Pixel) -> @location(0) f32 {
-    let depth = textureLoad(depth_texture, vec2<i32>(pixel.position.xy), 0).r;
+    let depth = depth_from(textureLoad(depth_texture, vec2<i32>(pixel.position.xy), 0));
     return select(BIT / 255.0, 0.0, depth >= NO_SURFACE);
 }

@@ -27,7 +27,8 @@ fn count(@builtin(global_invocation_id) pixel: vec3<u32>, @builtin(local_invocat
         let radiance = textureLoad(radiance_texture, pixel.xy, 0);
         let luminance = dot(radiance.rgb, vec3<f32>(0.2126, 0.7152, 0.0722));
         // Surfaces only, and only those that exposure applies to. False for NaN.
-        if textureLoad(depth_texture, pixel.xy, 0).r < NO_SURFACE && radiance.a < 0.5 && luminance > exp2(DARKEST) {
+        let depth = depth_from(textureLoad(depth_texture, pixel.xy, 0));
+        if depth < NO_SURFACE && radiance.a < 0.5 && luminance > exp2(DARKEST) {
             let stop = (log2(luminance) - DARKEST) / (BRIGHTEST_STOP - DARKEST);
             atomicAdd(&counts[u32(clamp(stop, 0.0, 1.0) * f32(BINS - 1u) + 0.5)], 1u);
         }
@@ -49,7 +50,7 @@ const HIGH: f32 = 0.95;
 const KEY: f32 = 0.36;
 // The share that must stay below BURNT, so that what a small lamp lights keeps its colours.
 const NOT_BURNT: f32 = 0.97;
-const BURNT: f32 = 1.1;
+const BURNT: f32 = 1.8;
 
 fn luminance_of(bin: f32) -> f32 {
     return exp2(DARKEST + bin * (BRIGHTEST_STOP - DARKEST) / f32(BINS - 1u));

@@ -34,31 +34,30 @@ pub(super) fn scene() -> Scene {
 
     let wood = b.matte("wood", 0xc79a6b, 0.5);
     for (name, pose, x, z, turn) in [
-        ("walker", Pose::WALK, 1.6, 3.4, 150.0),
+        ("walker", Pose::WALK, 1.7, 2.6, 60.0),
         ("dancer", Pose::DANCE, -0.4, 1.2, 30.0),
         ("greeter", Pose::WAVE, -3.0, 3.0, 120.0),
     ] {
         b.add(name, figure(&pose), wood, at(x, 0.0, z, turn));
     }
-    b.camera("hall", DVec3::new(2.6, 2.3, 9.6), DVec3::new(-0.1, 3.35, -2.0), 58.0);
+    b.camera("hall", DVec3::new(2.5, 2.2, 8.4), DVec3::new(-0.1, 3.3, -2.0), 56.0);
     b.camera("behind the grid", DVec3::new(-4.3, 3.6, -2.1), LIGHT + DVec3::Y * 0.05, 62.0);
     b.finish()
 }
 
 /// Floor, walls with Gothic windows, two rows of columns under arches, ribs across.
 fn nave(b: &mut SceneBuilder) {
-    let here = DAffine3::IDENTITY;
     let floor = b.textured(pattern::tiles("floor", 2, [0xa79c8c, 0x6f675e], 0x3c3833), 2.0, 0.4);
     let ashlar = b.textured(pattern::bricks("ashlar", [3, 6], 0xb3a891, 0x776e60), 3.0, 0.85);
     let marble = b.textured(pattern::stone("marble", 0xcfc5b1, 0.18), 2.0, 0.6);
     b.block("floor", [-8.5, -0.4, -12.5], [8.5, 0.0, 13.5], floor);
     b.block("ceiling", [-8.5, 10.0, -12.5], [8.5, 10.4, 13.5], ashlar);
 
-    let window = Arch { span: 1.5, sill: 2.2, spring: 5.2, pointed: true };
+    let window = Arch { span: 1.5, sill: 2.2, spring: 5.2, rise: 1.3, pointed: true };
     let side = b.mesh("side wall", painted(arcade(6, window, 2.35, 10.1, 0.5), ashlar));
     b.place("west wall", side, at(-8.0, -0.05, 0.5, 90.0));
     b.place("east wall", side, at(8.0, -0.05, 0.5, -90.0));
-    let rose = Arch { span: 2.2, sill: 3.4, spring: 6.2, pointed: true };
+    let rose = Arch { span: 2.2, sill: 3.4, spring: 6.2, rise: 1.91, pointed: true };
     let end = b.mesh("end wall", painted(arcade(3, rose, 2.4, 10.1, 0.5), ashlar));
     b.place("north wall", end, at(0.0, -0.05, -12.0, 0.0));
     b.place("south wall", end, at(0.0, -0.05, 13.0, 180.0));
@@ -66,11 +65,17 @@ fn nave(b: &mut SceneBuilder) {
     let pillar = b.mesh("column", painted(column(0.32, 4.6), marble));
     let rows = b.mesh(
         "nave arcade",
-        painted(arcade(5, Arch { span: 3.4, sill: 0.0, spring: 0.3, pointed: true }, 0.8, 5.41, 0.6), ashlar),
+        painted(
+            arcade(5, Arch { span: 3.4, sill: 0.0, spring: 0.3, rise: 2.94, pointed: true }, 0.8, 5.41, 0.6),
+            ashlar,
+        ),
     );
     let rib = b.mesh(
         "rib",
-        painted(arcade(1, Arch { span: 9.2, sill: 0.0, spring: 0.2, pointed: true }, 0.35, 5.41, 0.45), ashlar),
+        painted(
+            arcade(1, Arch { span: 9.2, sill: 0.0, spring: 0.2, rise: 5.0, pointed: true }, 0.35, 5.41, 0.45),
+            ashlar,
+        ),
     );
     for side in [-1.0, 1.0] {
         b.place("nave arcade", rows, at(5.0 * side, 4.6, 0.0, 90.0));

@@ -5,7 +5,7 @@ use glam::{DAffine3, DVec2, DVec3};
 use std::f64::consts::TAU;
 use zfail_plan::scene::{Mesh, Scene};
 
-use super::builder::{SceneBuilder, at};
+use super::builder::SceneBuilder;
 use super::shapes::{CREASE, Slab, ico_sphere, ring};
 use super::{pattern, props};
 
@@ -15,18 +15,19 @@ pub(super) fn scene() -> Scene {
     let mut b = SceneBuilder::new("nested", [0.014, 0.018, 0.03], [0.01, 0.015, 0.03]);
     hall(&mut b);
     let shells = [
-        ("inner shell", 0xe08a54, Shell { radius: 0.42, ribs: 11, twist: 1.2 }, [0.35, -0.1, -0.5], -14.0),
-        ("middle shell", 0x58a8a0, Shell { radius: 1.5, ribs: 12, twist: -0.7 }, [0.0, 0.0, 0.0], 12.0),
-        ("outer shell", 0xd9cdb8, Shell { radius: 2.2, ribs: 18, twist: 0.5 }, [0.0, 0.0, 0.0], -8.0),
+        ("inner shell", 0xe08a54, Shell { radius: 0.42, ribs: 7, bars: 2, twist: 0.9 }, [0.35, -0.1, -0.5], -14.0),
+        ("middle shell", 0xcfd6d2, Shell { radius: 1.5, ribs: 11, bars: 5, twist: -0.6 }, [0.0, 0.0, 0.0], 12.0),
+        ("outer shell", 0x4f9a97, Shell { radius: 2.2, ribs: 14, bars: 4, twist: 0.5 }, [0.0, 0.0, 0.0], -8.0),
     ];
     for (name, color, shell, offset, lean) in shells {
         let glaze = b.matte(name, color, 0.45);
-        let place = DAffine3::from_translation(CENTER + DVec3::from(offset)) * DAffine3::from_rotation_z(f64::to_radians(lean));
+        let place =
+            DAffine3::from_translation(CENTER + DVec3::from(offset)) * DAffine3::from_rotation_z(f64::to_radians(lean));
         b.add(name, shell.mesh(), glaze, place);
     }
     let light = CENTER + DVec3::new(0.35, -0.06, -0.5);
     let brass = b.matte("brass", 0xd8b65a, 0.35);
-    for (radius, tilt, turn) in [(0.56, 75.0, 10.0), (0.68, 25.0, 80.0), (0.8, 110.0, 40.0)] {
+    for (radius, tilt, turn) in [(0.56, 75.0, 10.0), (0.7, 25.0, 80.0)] {
         let place = DAffine3::from_translation(light)
             * DAffine3::from_rotation_y(f64::to_radians(turn))
             * DAffine3::from_rotation_x(f64::to_radians(tilt));
@@ -38,8 +39,9 @@ pub(super) fn scene() -> Scene {
         let place = light + out * 0.95 + DVec3::Y * (0.2 * (k as f64 - 2.0));
         b.add("planet", ico_sphere(0.075, 3, true), planet, DAffine3::from_translation(place));
     }
-    b.bulb("inner light", light, 0.05, 0xffd19a, 11.0);
-    b.bulb("outer light", DVec3::new(-3.9, 4.0, 2.6), 0.09, 0x7fa8ff, 34.0);
+    b.bulb("inner light", light, 0.05, 0xffd19a, 8.0);
+    b.point("light by the eye", CENTER + DVec3::new(-0.9, 0.55, 0.85), 0x86b8ff, 2.2);
+    b.bulb("outer light", DVec3::new(-3.9, 4.0, 2.6), 0.09, 0x7fa8ff, 60.0);
     b.camera("camera", CENTER + DVec3::new(-0.62, 0.32, 1.05), CENTER + DVec3::new(0.3, -0.12, -0.8), 68.0);
     b.finish()
 }
@@ -59,6 +61,8 @@ fn hall(b: &mut SceneBuilder) {
 struct Shell {
     radius: f64,
     ribs: usize,
+    /// Eighths of the circumference that the ribs fill.
+    bars: usize,
     twist: f64,
 }
 
@@ -67,7 +71,7 @@ impl Shell {
         const ROWS: usize = 26;
         let columns = 8 * self.ribs;
         Slab { wraps: true, ..Slab::new(columns, ROWS) }.mesh(
-            |i, j| i % 8 < 3 || matches!(j, 0..3 | 8..10 | 15..17 | 23..),
+            |i, j| i % 8 < self.bars || matches!(j, 0..3 | 9..12 | 17..20 | 23..),
             |i, j| {
                 let height = j as f64 / ROWS as f64;
                 let around = DVec2::from_angle(TAU * i as f64 / columns as f64 + self.twist * height);

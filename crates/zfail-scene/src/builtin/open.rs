@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 use zfail_plan::scene::{Mesh, Scene};
 
 use super::builder::{SceneBuilder, at};
-use super::shapes::{CREASE, Facets, cuboid, cylinder, ico_sphere, lathe, painted, sheet, stairs, torus_knot};
+use super::shapes::{CREASE, Facets, cylinder, ico_sphere, lathe, painted, sheet, stairs, torus_knot};
 use super::{pattern, props};
 
 pub(super) fn scene() -> Scene {
@@ -14,9 +14,9 @@ pub(super) fn scene() -> Scene {
     let floor = b.textured(pattern::planks("floor", 6, 0x9d8468, 0x3c3026), 1.6, 0.5);
     let wall = b.textured(pattern::stone("wall", 0xa7b0b8, 0.1), 2.0, 0.9);
     let here = DAffine3::IDENTITY;
-    b.block("floor", [-5.0, -0.3, -2.6], [5.0, 0.0, 4.5], floor);
+    b.block("floor", [-8.0, -0.3, -2.6], [8.0, 0.0, 4.5], floor);
     // One sheet without thickness, as walls of game levels are.
-    b.add("wall", sheet(1, 1, |i, j| DVec3::new(10.0 * i as f64 - 5.0, 4.0 * j as f64, -2.6)), wall, here);
+    b.add("wall", sheet(1, 1, |i, j| DVec3::new(16.0 * i as f64 - 8.0, 5.0 * j as f64, -2.6)), wall, here);
 
     let pale = b.matte("plinth", 0xd9d4ca, 0.7);
     let plinth = b.mesh("plinth", painted(cylinder(0.42, 0.5, 40), pale));
@@ -46,7 +46,7 @@ pub(super) fn scene() -> Scene {
 
     b.bulb("warm light", DVec3::new(-2.6, 2.9, 2.4), 0.06, 0xffd3a0, 34.0);
     b.bulb("cool light", DVec3::new(2.9, 2.3, 1.9), 0.06, 0x8fb8ff, 17.0);
-    b.camera("camera", DVec3::new(0.9, 2.55, 5.0), DVec3::new(-0.05, 0.72, -0.1), 46.0);
+    b.camera("camera", DVec3::new(1.1, 2.9, 5.6), DVec3::new(0.08, 0.42, 0.25), 38.0);
     b.finish()
 }
 

@@ -6,13 +6,12 @@ use zfail_plan::scene::{LightKind, Mesh, Scene};
 use super::builder::{SceneBuilder, at};
 use super::pattern;
 use super::props::{Pose, block, figure, tree};
-use super::shapes::{capsule, cuboid, extruded, ico_sphere, merged, moved, painted};
+use super::shapes::{capsule, extruded, ico_sphere, merged, moved, painted};
 
 pub(super) fn scene() -> Scene {
     let mut b = SceneBuilder::new("ortho", [0.1, 0.11, 0.15], [0.18, 0.3, 0.36]);
     let direction = DVec3::new(0.62, -0.9, -0.28).normalize();
     b.light("sun", LightKind::Directional { direction }, 0xffe3bd, 3.0);
-    let here = DAffine3::IDENTITY;
 
     let soil = b.textured(pattern::stone("soil", 0x8a6a4c, 0.3), 2.0, 0.95);
     let grass = b.textured(pattern::grass("grass", 0x76a045, 0xa4ad55), 3.0, 0.95);
@@ -24,7 +23,7 @@ pub(super) fn scene() -> Scene {
     house(&mut b);
     garden(&mut b);
     b.bulb("lantern", DVec3::new(2.35, 1.86, 1.5), 0.09, 0xffb458, 5.0);
-    b.orthographic_camera("isometric", DVec3::new(14.0, 12.6, 15.4), DVec3::new(0.0, 0.55, 0.0), 10.6);
+    b.orthographic_camera("isometric", DVec3::new(14.0, 12.6, 15.4), DVec3::new(0.0, 0.6, 0.0), 10.2);
     b.finish()
 }
 

@@ -50,6 +50,8 @@ pub(super) struct Arch {
     pub sill: f64,
     /// Height at which the arch springs.
     pub spring: f64,
+    /// Height of the arch above that.
+    pub rise: f64,
     /// Whether it ends in a point, as Gothic ones do.
     pub pointed: bool,
 }
@@ -57,9 +59,9 @@ pub(super) struct Arch {
 impl Arch {
     /// Height of the opening's edge at `t` in -1..1 across it.
     pub fn edge(&self, t: f64) -> f64 {
-        let half = 0.5 * self.span;
-        let rise = if self.pointed { 4.0 - (t.abs() + 1.0).powi(2) } else { 1.0 - t * t };
-        self.spring + half * rise.max(0.0).sqrt()
+        // A point is where two circles meet, each around the other's springing.
+        let squared = if self.pointed { (4.0 - (t.abs() + 1.0).powi(2)) / 3.0 } else { 1.0 - t * t };
+        self.spring + self.rise * squared.max(0.0).sqrt()
     }
 }
 

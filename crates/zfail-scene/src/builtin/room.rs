@@ -20,7 +20,6 @@ pub(super) fn scene() -> Scene {
 }
 
 fn walls(b: &mut SceneBuilder) {
-    let here = DAffine3::IDENTITY;
     let tiles = b.textured(pattern::tiles("tiles", 4, [0xb9b2a6, 0x8d867c], 0x4a453f), 2.4, 0.35);
     let bricks = b.textured(pattern::bricks("bricks", [4, 8], 0xa89a8c, 0x5f574f), 1.6, 0.85);
     let timber = b.textured(pattern::planks("timber", 4, 0x8a6848, 0x20160e), 1.5, 0.7);
@@ -29,7 +28,7 @@ fn walls(b: &mut SceneBuilder) {
     b.block("west wall", [-6.3, -0.1, -4.8], [-6.0, 4.3, 4.8], bricks);
     b.block("south wall", [-6.3, -0.1, 4.5], [6.3, 4.3, 4.8], bricks);
     b.block("east wall", [6.0, -0.1, -4.8], [6.3, 4.3, 4.8], bricks);
-    let door = Arch { span: 1.8, sill: 0.0, spring: 1.9, pointed: false };
+    let door = Arch { span: 1.8, sill: 0.0, spring: 1.9, rise: 0.9, pointed: false };
     b.add("north wall", arcade(3, door, 2.16, 4.3, 0.3), bricks, at(0.0, -0.05, -4.65, 0.0));
     b.block("niche", [-6.3, -0.1, -5.6], [6.3, 4.3, -5.3], bricks);
     let beam = b.mesh("beam", super::shapes::painted(block(DVec3::new(0.26, 0.34, 9.2)), timber));
@@ -79,5 +78,5 @@ fn contents(b: &mut SceneBuilder) {
         b.add(name, figure(&pose), wood, at(x, 0.0, z, turn));
     }
     let ball = b.matte("ball", 0xd8d4cc, 0.25);
-    b.add("ball", ico_sphere(0.32, 4, true), ball, at(-2.9, 0.32, 1.2, 0.0));
+    b.add("ball", ico_sphere(0.32, 4, true), ball, at(-1.9, 0.32, 0.75, 0.0));
 }

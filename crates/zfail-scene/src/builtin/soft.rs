@@ -1,19 +1,18 @@
 //! Twelve clustered lights that together cast soft shadows (E&K Figure 4, right; McGuire et al. section 8).
 
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 use zfail_plan::scene::{LightKind, Scene};
 
 use super::builder::{SceneBuilder, at};
 use super::pattern;
 use super::props::{block, bowl, vase};
-use super::shapes::{capsule, cuboid, ico_sphere, merged, moved, torus};
+use super::shapes::{capsule, ico_sphere, merged, moved, torus};
 
 /// Lights in the cluster; each has this fraction of the lamp's intensity.
 const LIGHTS: u32 = 12;
 
 pub(super) fn scene() -> Scene {
     let mut b = SceneBuilder::new("soft", [0.05, 0.055, 0.07], [0.02, 0.02, 0.03]);
-    let here = DAffine3::IDENTITY;
     let floor = b.textured(pattern::planks("floor", 5, 0xb08a62, 0x5a4330), 1.0, 0.5);
     let wall = b.textured(pattern::stone("wall", 0xb9c3c4, 0.1), 2.0, 0.9);
     b.block("floor", [-3.5, -0.2, -2.2], [3.5, 0.0, 3.5], floor);
@@ -72,10 +71,10 @@ fn still_life(b: &mut SceneBuilder) {
     const TABLE: f64 = 0.765;
     let glaze = b.matte("white glaze", 0xe9e6df, 0.25);
     let cobalt = b.matte("cobalt glaze", 0x31528f, 0.22);
-    let copper = b.matte("copper", 0xd98f6c, 0.28);
+    let brass = b.matte("brass", 0xb98a45, 0.25);
     b.add("vase", vase(0.46), cobalt, at(-0.62, TABLE, -0.6, 0.0));
     b.add("bowl", bowl(0.2), glaze, at(0.02, TABLE, -0.42, 0.0));
-    b.add("ring", torus(0.11, 0.032, 56, 18), copper, at(0.5, TABLE + 0.032, -0.38, 0.0));
+    b.add("ring", torus(0.11, 0.032, 56, 18), brass, at(0.5, TABLE + 0.032, -0.38, 0.0));
     let stems = b.matte("stems", 0x55733f, 0.6);
     let stalk = |x: f64, y: f64, z: f64| capsule(DVec3::new(0.0, 0.1, 0.0), 0.006, DVec3::new(x, y, z), 0.004, 10);
     let tips = [(0.13, 0.78, 0.05), (-0.14, 0.72, 0.07), (-0.02, 0.86, -0.1), (0.05, 0.7, 0.14)];

@@ -1,17 +1,16 @@
 //! 1000 and 256 stacked sheets between light and floor: counts beyond the 8 bits of the stencil buffer
 //! (E&K section 5; McGuire et al. section 4 on the 256th stair).
 
-use glam::{DAffine3, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 use zfail_plan::scene::{Mesh, Scene};
 
 use super::builder::{SceneBuilder, at, linear};
 use super::pattern;
 use super::props::{Pose, figure};
-use super::shapes::{Facets, cuboid, cylinder, ico_sphere, merged, tinted};
+use super::shapes::{Facets, cylinder, ico_sphere, merged, tinted};
 
 pub(super) fn scene() -> Scene {
     let mut b = SceneBuilder::new("stacked", [0.03, 0.032, 0.042], [0.012, 0.014, 0.02]);
-    let here = DAffine3::IDENTITY;
     let floor = b.textured(pattern::tiles("floor", 2, [0xc2bcb2, 0xaea79c], 0x6f6a62), 2.4, 0.45);
     let wall = b.textured(pattern::stone("wall", 0x8d949c, 0.1), 2.5, 0.9);
     b.block("floor", [-6.0, -0.3, -3.2], [6.0, 0.0, 6.0], floor);
@@ -27,15 +26,16 @@ pub(super) fn scene() -> Scene {
         b.add("disc", cylinder(0.85, 0.04, 64), dark, at(x, 0.0, 0.0, 0.0));
     }
     let wood = b.matte("wood", 0xd2a877, 0.5);
-    b.add("visitor", figure(&Pose::STAND), wood, at(-0.1, 0.0, 1.0, 195.0));
+    b.add("visitor", figure(&Pose::STAND), wood, at(3.0, 0.0, -0.6, -60.0));
     let ball = b.matte("ball", 0xb8493a, 0.35);
-    b.add("ball", ico_sphere(0.22, 4, true), ball, at(2.7, 0.22, 0.8, 0.0));
+    b.add("ball", ico_sphere(0.22, 4, true), ball, at(0.1, 0.22, 0.9, 0.0));
 
-    let spots = [("spot over 1000", -1.25, 0xffe0b8, 150.0), ("spot over 256", 1.35, 0xcfe4ff, 150.0)];
+    let spots = [("spot over 1000", -1.25, 0xffe0b8, 75.0), ("spot over 256", 1.35, 0xcfe4ff, 75.0)];
     for (name, x, color, candela) in spots {
         b.spot(name, DVec3::new(x, 6.2, 0.0), DVec3::new(x, 0.0, 0.0), 24.0, color, candela);
     }
-    b.camera("camera", DVec3::new(0.85, 2.0, 5.9), DVec3::new(0.05, 1.5, 0.0), 46.0);
+    b.point("window", DVec3::new(-1.2, 3.4, 7.0), 0xaec4ff, 26.0);
+    b.camera("camera", DVec3::new(1.3, 4.5, 6.3), DVec3::new(0.1, 1.3, 0.0), 42.0);
     b.finish()
 }
 

@@ -7,18 +7,17 @@ use zfail_plan::scene::{Mesh, Scene};
 use super::builder::{SceneBuilder, at};
 use super::pattern;
 use super::props::{Pose, block, figure};
-use super::shapes::{Slab, cone, cuboid, cylinder, lathe, merged, moved, painted};
+use super::shapes::{Slab, cone, cylinder, lathe, merged, moved, painted};
 
 pub(super) fn scene() -> Scene {
-    let mut b = SceneBuilder::new("stage", [0.022, 0.022, 0.03], [0.004, 0.004, 0.006]);
-    let here = DAffine3::IDENTITY;
+    let mut b = SceneBuilder::new("stage", [0.012, 0.012, 0.018], [0.004, 0.004, 0.006]);
     let boards = b.textured(pattern::planks("boards", 8, 0x9a7450, 0x2b1d12), 1.6, 0.4);
     let velvet = b.matte("velvet", 0x9c2f34, 0.95);
     let screen = b.textured(pattern::stone("screen", 0xbfc3c9, 0.06), 3.0, 0.9);
     b.block("stage", [-4.6, -0.9, -3.0], [4.6, 0.0, 2.2], boards);
     b.block("screen", [-4.6, -0.5, -3.2], [4.6, 5.0, -3.0], screen);
     for side in [-1.0, 1.0] {
-        b.add("curtain", curtain(2.0, 4.9), velvet, at(3.55 * side, 0.0, 0.7 - 0.2 * side, -14.0 * side));
+        b.add("curtain", curtain(2.0, 4.9), velvet, at(3.8 * side, 0.0, 0.3 - 0.2 * side, -14.0 * side));
     }
     b.add("valance", curtain(9.0, 0.8), velvet, at(0.0, 4.1, 1.15, 0.0));
 
@@ -42,18 +41,18 @@ pub(super) fn scene() -> Scene {
 
     let lamp = b.mesh("lamp", painted(lamp(), paint));
     let lights = [
-        ("rose spot", DVec3::new(-3.1, 4.4, 2.9), DVec3::new(-0.4, 0.5, -0.6), 0xff6f91, 190.0),
-        ("amber spot", DVec3::new(0.2, 4.8, 3.4), DVec3::new(0.1, 0.7, -0.3), 0xffd27a, 130.0),
-        ("azure spot", DVec3::new(3.2, 4.4, 2.8), DVec3::new(0.5, 0.5, -0.6), 0x5fb0ff, 230.0),
+        ("rose spot", DVec3::new(-3.1, 4.4, 2.9), DVec3::new(-0.9, 0.6, -1.0), 0xff5f86, 190.0),
+        ("amber spot", DVec3::new(0.2, 4.8, 3.4), DVec3::new(0.1, 0.9, -0.8), 0xffc766, 105.0),
+        ("azure spot", DVec3::new(3.2, 4.4, 2.8), DVec3::new(0.9, 0.6, -1.0), 0x4fa2ff, 260.0),
     ];
     for (name, position, target, color, candela) in lights {
-        b.spot(name, position, target, 21.0, color, candela);
+        b.spot(name, position, target, 27.0, color, candela);
         let back = (position - target).normalize();
         let right = DVec3::Y.cross(back).normalize();
         let matrix3 = DMat3::from_cols(right, back.cross(right), back);
         b.place(name, lamp, DAffine3 { matrix3, translation: position });
     }
-    b.camera("camera", DVec3::new(-1.5, 1.75, 7.4), DVec3::new(-0.05, 1.65, -0.5), 42.0);
+    b.camera("camera", DVec3::new(-1.2, 1.6, 7.4), DVec3::new(-0.05, 1.42, -0.5), 34.0);
     b.finish()
 }
 

@@ -1,14 +1,14 @@
 //! A light on top of a long staircase, whose steps cast deeply nested volumes (McGuire et al., Image 3).
 
 use glam::{DAffine3, DVec3};
-use zfail_plan::scene::Scene;
+use zfail_plan::scene::{LightKind, Scene};
 
 use super::builder::{SceneBuilder, at};
 use super::pattern;
 use super::props::{Arch, Pose, arcade, block, figure};
 use super::shapes::{cuboid, ico_sphere, lathe, merged, moved, painted, stairs};
 
-const STEPS: usize = 64;
+const STEPS: usize = 56;
 const RISE: f64 = 0.16;
 const RUN: f64 = 0.3;
 const WIDTH: f64 = 4.0;
@@ -22,9 +22,9 @@ pub(super) fn scene() -> Scene {
     let ashlar = b.textured(pattern::bricks("ashlar", [3, 6], 0xa4937c, 0x5f5548), 2.4, 0.85);
     let paving = b.textured(pattern::tiles("paving", 4, [0x9f978b, 0x87806f], 0x4b463e), 3.0, 0.6);
     b.add("stairs", stairs(STEPS, RISE, RUN, WIDTH), tread, here);
-    b.block("court", [-7.0, -0.4, -0.2], [7.0, 0.0, 8.0], paving);
-    b.block("landing", [-3.0, -0.4, far - 4.0], [3.0, top, far + 0.001], tread);
-    let gate = Arch { span: 1.8, sill: 0.0, spring: 2.2, pointed: false };
+    b.block("court", [-14.0, -0.4, -26.0], [14.0, -0.001, 12.0], paving);
+    b.block("landing", [-4.2, -0.4, far - 4.0], [4.2, top, far + 0.001], tread);
+    let gate = Arch { span: 1.8, sill: 0.0, spring: 2.2, rise: 0.9, pointed: false };
     b.add("gate", arcade(3, gate, 0.6, 4.2, 0.5), ashlar, at(0.0, top - 0.01, far - 2.6, 0.0));
 
     let wall = b.mesh("wall", painted(balustrade_wall(), ashlar));
@@ -53,8 +53,10 @@ pub(super) fn scene() -> Scene {
     }
     let ball = b.matte("ball", 0xb8493a, 0.4);
     b.add("ball", ico_sphere(0.3, 4, true), ball, at(0.9, 0.3, 1.5, 0.0));
-    b.bulb("light", DVec3::new(0.0, top + 1.5, far + 0.2), 0.16, 0xffcf8f, 620.0);
-    b.camera("camera", DVec3::new(-1.1, 2.1, 4.4), DVec3::new(0.35, 3.7, -6.0), 58.0);
+    b.bulb("light", DVec3::new(0.0, top + 1.7, far + 0.3), 0.14, 0xffcf8f, 260.0);
+    b.light("moon", LightKind::Directional { direction: DVec3::new(-0.5, -0.6, -0.3).normalize() }, 0x8fb0ff, 0.5);
+    b.camera("from the top", DVec3::new(1.5, top + 1.3, far + 4.6), DVec3::new(-0.7, 1.2, -1.5), 56.0);
+    b.camera("from the side", DVec3::new(10.6, 9.0, 0.2), DVec3::new(-0.6, 5.6, -10.2), 52.0);
     b.finish()
 }
 

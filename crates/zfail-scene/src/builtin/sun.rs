@@ -6,19 +6,19 @@ use zfail_plan::scene::{LightKind, Scene};
 use super::builder::{SceneBuilder, at};
 use super::pattern;
 use super::props::{Arch, Pose, arcade, block, column, cypress, figure, tree};
-use super::shapes::{CREASE, cuboid, ico_sphere, lathe, merged, moved, painted};
+use super::shapes::{CREASE, ico_sphere, lathe, merged, moved, painted};
 
 pub(super) fn scene() -> Scene {
-    let mut b = SceneBuilder::new("sun", [0.11, 0.14, 0.21], [0.42, 0.58, 0.86]);
+    let mut b = SceneBuilder::new("sun", [0.15, 0.19, 0.28], [0.42, 0.58, 0.86]);
     let direction = DVec3::new(-0.52, -0.36, 0.78).normalize();
     b.light("sun", LightKind::Directional { direction }, 0xffd9a8, 3.4);
 
-    let grass = b.textured(pattern::grass("grass", 0x5d7d3a, 0x9a9350), 4.0, 0.95);
+    let grass = b.textured(pattern::grass("grass", 0x5f7a41, 0x8a8752), 4.0, 0.95);
     b.block("ground", [-150.0, -1.0, -150.0], [150.0, 0.0, 150.0], grass);
     ruin(&mut b);
     garden(&mut b);
-    b.camera("with the light", DVec3::new(6.8, 2.6, -10.5), DVec3::new(-0.4, 1.9, 0.6), 50.0);
-    b.camera("against the light", DVec3::new(-6.4, 1.9, 11.2), DVec3::new(0.9, 2.3, -1.4), 50.0);
+    b.camera("with the light", DVec3::new(5.4, 2.4, -11.5), DVec3::new(-0.2, 1.75, 0.6), 48.0);
+    b.camera("against the light", DVec3::new(-5.2, 2.3, 11.6), DVec3::new(0.6, 1.8, -1.2), 50.0);
     b.finish()
 }
 
@@ -30,7 +30,7 @@ fn ruin(b: &mut SceneBuilder) {
         [0.0, 1.0].map(|k| moved(block(DVec3::new(9.6 - 0.8 * k, 0.2, 7.6 - 0.8 * k)), &at(0.0, 0.2 * k, 0.0, 0.0)));
     b.add("platform", merged("platform", platform), paving, DAffine3::IDENTITY);
 
-    let arch = Arch { span: 1.7, sill: 0.0, spring: 2.3, pointed: false };
+    let arch = Arch { span: 1.7, sill: 0.0, spring: 2.3, rise: 0.85, pointed: false };
     b.add("arcade", arcade(3, arch, 0.6, 4.0, 0.5), marble, at(0.0, 0.39, -2.7, 0.0));
     let pillar = b.mesh("column", painted(column(0.26, 3.4), marble));
     for (x, z) in [(-3.6, 2.5), (-1.2, 2.5), (1.2, 2.5), (3.6, 2.5), (3.6, -0.1)] {
@@ -38,7 +38,7 @@ fn ruin(b: &mut SceneBuilder) {
     }
     let stump = b.mesh("broken column", painted(column(0.26, 1.5), marble));
     b.place("broken column", stump, at(-3.6, 0.395, -0.1, 0.0));
-    b.place("fallen column", stump, at(-5.6, 0.33, 3.4, 35.0) * DAffine3::from_rotation_x(1.53));
+
     b.add("architrave", block(DVec3::new(5.6, 0.4, 0.72)), marble, at(1.2, 3.79, 2.5, 0.0));
 
     let basin = [
@@ -68,7 +68,7 @@ fn garden(b: &mut SceneBuilder) {
     let cypresses = [
         (-6.6, -4.2, 1.0),
         (-8.3, -2.4, 0.85),
-        (6.8, -3.6, 1.05),
+        (7.6, -1.6, 1.05),
         (8.6, -0.8, 0.8),
         (-13.0, -11.0, 1.4),
         (11.0, -16.0, 1.5),
@@ -95,7 +95,7 @@ fn garden(b: &mut SceneBuilder) {
     let rock = b.textured(pattern::stone("rock", 0xa39a8b, 0.3), 1.0, 0.9);
     let boulder = b.mesh("rock", painted(ico_sphere(0.5, 1, false), rock));
     for (x, z, size, turn) in
-        [(4.9, 5.6, 0.9, 10.0), (5.7, 5.2, 0.5, 50.0), (-5.2, 5.9, 0.7, 80.0), (5.6, -5.6, 0.8, 30.0)]
+        [(4.9, 5.6, 0.9, 10.0), (5.7, 5.2, 0.5, 50.0), (-6.2, 4.9, 0.7, 80.0), (5.6, -5.6, 0.8, 30.0)]
     {
         let shape = DVec3::new(1.2, 0.8, 1.0) * size;
         b.place("rock", boulder, at(x, 0.2 * size, z, turn) * DAffine3::from_scale(shape));

@@ -1,5 +1,6 @@
 //! Every generated scene is complete and sound, and has what its description promises.
 
+use super::shapes::checks::{unmatched_edges, volume};
 use super::{SCENES, scene};
 use glam::Vec3;
 use zfail_plan::scene::{LightKind, Scene};
@@ -20,6 +21,18 @@ fn scenes_are_sound() {
             assert!(mesh.primitives.iter().all(|p| p.material.is_some()), "{}: {} is unpainted", scene.name, mesh.name);
         }
     }
+}
+
+#[test]
+fn bodies_are_closed_outside_the_scenes_for_open_ones() {
+    for scene in scenes().filter(|scene| !["open", "stacked"].contains(&scene.name.as_str())) {
+        for mesh in &scene.meshes {
+            assert_eq!(unmatched_edges(mesh), 0, "{}: {} is open", scene.name, mesh.name);
+            assert!(volume(mesh) > 0.0, "{}: {} is inside out", scene.name, mesh.name);
+        }
+    }
+    let open = scene("open").expect("a scene");
+    assert!(open.meshes.iter().filter(|mesh| unmatched_edges(mesh) > 0).count() >= 5);
 }
 
 #[test]

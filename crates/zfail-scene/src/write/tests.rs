@@ -287,7 +287,7 @@ fn broken_scenes_are_named_and_not_written() {
     );
     let skewed = |s: &mut Scene| {
         s.materials[0].emissive_texture =
-            Some(TextureRef { uv_from_mesh: [[1.0, 0.5, 0.0], [0.0, 1.0, 0.0]], ..TextureRef::new(0) })
+            Some(TextureRef { uv_from_mesh: [[1.0, 0.5, 0.0], [0.0, 1.0, 0.0]], ..TextureRef::new(0) });
     };
     assert_eq!(broken(skewed), "materials[0].emissiveTexture");
 }

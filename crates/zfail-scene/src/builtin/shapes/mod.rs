@@ -33,4 +33,6 @@ fn circle(n: usize) -> Vec<DVec2> {
 }
 
 #[cfg(test)]
+pub(super) mod checks;
+#[cfg(test)]
 mod tests;

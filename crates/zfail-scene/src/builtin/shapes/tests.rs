@@ -1,45 +1,8 @@
 //! Each generator of a solid is closed and faces outward; the checks themselves fail on broken meshes.
 
+use super::checks::{collapsed_triangles, repeated_edges, unmatched_edges, volume};
 use super::*;
 use glam::{DAffine3, DVec2, DVec3};
-use rustc_hash::FxHashMap;
-
-/// Directed edges, after a weld of bit-equal positions, without an opposite partner.
-fn unmatched_edges(mesh: &Mesh) -> usize {
-    let mut balance: FxHashMap<[[u32; 3]; 2], i32> = FxHashMap::default();
-    for t in &mesh.triangles {
-        let p = t.map(|v| mesh.positions[v as usize].map(f32::to_bits));
-        for k in 0..3 {
-            let [a, b] = [p[k], p[(k + 1) % 3]];
-            assert_ne!(a, b, "collapsed triangle in {}", mesh.name);
-            *balance.entry([a, b]).or_default() += 1;
-            *balance.entry([b, a]).or_default() -= 1;
-        }
-    }
-    balance.values().filter(|&&n| n > 0).map(|&n| n as usize).sum()
-}
-
-/// How many directed edges occur more than once: 0 in a manifold.
-fn repeated_edges(mesh: &Mesh) -> usize {
-    let mut uses: FxHashMap<[[u32; 3]; 2], u32> = FxHashMap::default();
-    for t in &mesh.triangles {
-        let p = t.map(|v| mesh.positions[v as usize].map(f32::to_bits));
-        for k in 0..3 {
-            *uses.entry([p[k], p[(k + 1) % 3]]).or_default() += 1;
-        }
-    }
-    uses.values().filter(|&&n| n > 1).count()
-}
-
-fn volume(mesh: &Mesh) -> f64 {
-    mesh.triangles
-        .iter()
-        .map(|t| {
-            let [a, b, c] = t.map(|v| mesh.position(v));
-            a.dot(b.cross(c)) / 6.0
-        })
-        .sum()
-}
 
 fn bowl() -> Mesh {
     let mut profile = curve(&[(0.0, 0.0), (0.5, 0.1), (0.8, 0.6)], 6);
@@ -95,6 +58,7 @@ fn solids_are_closed_manifolds_and_face_outward() {
     for mesh in solids() {
         assert_eq!(unmatched_edges(&mesh), 0, "{} is open", mesh.name);
         assert_eq!(repeated_edges(&mesh), 0, "{} is not a manifold", mesh.name);
+        assert_eq!(collapsed_triangles(&mesh), 0, "{}", mesh.name);
         assert!(volume(&mesh) > 0.0, "{} is inside out", mesh.name);
     }
 }
@@ -143,6 +107,9 @@ fn checks_catch_holes_repetitions_and_inversion() {
     assert_eq!(unmatched_edges(&holed), 3);
     let twice = merged("twice", [bowl(), bowl()]);
     assert!(repeated_edges(&twice) > 0);
+    let mut pinched = bowl();
+    pinched.triangles[3][0] = pinched.triangles[3][1];
+    assert_eq!(collapsed_triangles(&pinched), 1);
     let mut inverted = bowl();
     for t in &mut inverted.triangles {
         t.swap(0, 1);

@@ -1,0 +1,119 @@
+//! Real models and the built-in scenes: no pixel may be wrong, with a light inside the model's bounds, one outside and
+//! a sun, whatever lights the file has of its own.
+//!
+//! Models are looked for in `ZFAIL_ASSETS`, or in `shared/assets` beside the checkout, and skipped where absent.
+//! `ZFAIL_SIZE=WxH` sets the size of the images, `ZFAIL_MODEL` limits the test to one file.
+
+use std::{env, path::PathBuf};
+use zfail_exact::bench::{self, Images};
+use zfail_exact::tally::Tally;
+use zfail_plan::glam::DVec3;
+use zfail_plan::scene::{Light, LightKind, Scene};
+use zfail_render::{Gpu, GpuOptions, Settings};
+
+/// Files without compression, skinned ones in rest pose.
+const MODELS: [&str; 20] = [
+    "godot-room/godot-room.glb",
+    "garage/garage.glb",
+    "zdm2/zdm2.glb",
+    "ToyCar/ToyCar.glb",
+    "FlightHelmet/FlightHelmet.glb",
+    "WaterBottle/WaterBottle.glb",
+    "LightsPunctualLamp/LightsPunctualLamp.glb",
+    "Suzanne/Suzanne.gltf",
+    "cad-featuretype/cad-featuretype.glb",
+    "retroufo/retroufo.glb",
+    "NegativeScaleTest/NegativeScaleTest.glb",
+    "CesiumMan/CesiumMan.glb",
+    "Fox/Fox.glb",
+    "GlassVaseFlowers/GlassVaseFlowers.glb",
+    "RiggedFigure/RiggedFigure.glb",
+    "kaykit-knight/kaykit-knight.glb",
+    "MorphStressTest/MorphStressTest.glb",
+    "SimpleInstancing/SimpleInstancing.glb",
+    "cat-statue/cat-statue.glb",
+    "truck-town/truck-town.glb",
+];
+
+fn size() -> [u32; 2] {
+    let text = env::var("ZFAIL_SIZE").unwrap_or_default();
+    text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?])).unwrap_or([192, 120])
+}
+
+fn assets() -> PathBuf {
+    let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/assets");
+    env::var_os("ZFAIL_ASSETS").map_or_else(|| beside.into(), PathBuf::from)
+}
+
+/// A light inside of the scene's bounds, one outside, and a sun.
+fn test_lights(scene: &Scene) -> Vec<Light> {
+    let bounds = scene.bounds();
+    let at = |x: f64, y: f64, z: f64| bounds.center() + bounds.half() * DVec3::new(x, y, z);
+    let point = |position| LightKind::Point { position, range: f64::INFINITY };
+    let direction = DVec3::new(-0.4, -0.8, -0.45).normalize();
+    [point(at(0.13, 0.21, -0.17)), point(at(1.7, 2.3, 1.9)), LightKind::Directional { direction }]
+        .into_iter()
+        .map(|kind| Light { name: "test".into(), kind, color: [1.0; 3], intensity: 10.0, excluded: Vec::new() })
+        .collect()
+}
+
+/// Compares every light of a scene from one of its cameras.
+fn judge(gpu: &Gpu, name: &str, scene: &Scene, camera: usize, masks: &mut Tally, failures: &mut Vec<String>) {
+    let view = scene.cameras[camera].view(size(), &scene.bounds());
+    let rendered = bench::render(gpu, scene, &view, &Settings::default()).unwrap_or_else(|e| panic!("{name}: {e}"));
+    let truths = bench::truths(scene, &view).unwrap_or_else(|e| panic!("{name}: {e}"));
+    let comparisons = Images { rendered, truths }.compare().unwrap_or_else(|e| panic!("{name}: {e}"));
+    let mut own = Tally::default();
+    for comparison in &comparisons {
+        own.add(&comparison.mask);
+        if comparison.failed() {
+            let (mask, count) = (&comparison.mask.wrong, &comparison.count.wrong);
+            failures.push(format!(
+                "{name}, light {}: {} wrong verdicts {:?}, {} wrong counts {:?}",
+                comparison.light,
+                mask.len(),
+                &mask[..mask.len().min(3)],
+                count.len(),
+                &count[..count.len().min(3)]
+            ));
+        }
+    }
+    println!("{name:20} {own}");
+    masks.merge(&own);
+}
+
+#[test]
+fn no_pixel_of_a_real_model_is_wrong() {
+    let gpu = Gpu::new(&GpuOptions::default()).expect("a graphics adapter");
+    let only = env::var("ZFAIL_MODEL").unwrap_or_default();
+    let (mut masks, mut failures) = (Tally::default(), Vec::new());
+    for model in MODELS.into_iter().filter(|m| m.contains(&only)) {
+        let path = assets().join(model);
+        if !path.exists() {
+            println!("skipped: {model} is not there");
+            continue;
+        }
+        let mut scene = zfail_scene::load(&path).unwrap_or_else(|e| panic!("{e}"));
+        zfail_scene::complete(&mut scene);
+        let test = test_lights(&scene);
+        scene.lights.extend(test);
+        judge(&gpu, model.split('/').next().unwrap_or(model), &scene, 0, &mut masks, &mut failures);
+    }
+    println!("all                  {masks}");
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn no_pixel_of_a_built_in_scene_is_wrong() {
+    let gpu = Gpu::new(&GpuOptions::default()).expect("a graphics adapter");
+    let only = env::var("ZFAIL_MODEL").unwrap_or_default();
+    let (mut masks, mut failures) = (Tally::default(), Vec::new());
+    for entry in zfail_scene::builtin::SCENES.iter().filter(|e| e.name.contains(&only)) {
+        let scene = zfail_scene::builtin::scene(entry.name).expect("a name from the list");
+        for camera in 0..scene.cameras.len() {
+            judge(&gpu, entry.name, &scene, camera, &mut masks, &mut failures);
+        }
+    }
+    println!("all                  {masks}");
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
