@@ -22,6 +22,9 @@ pub(crate) const ROUNDING: f64 = 1.0 / (1 << 22) as f64;
 /// Relative height over a triangle's plane below which the light may count as lying in it.
 pub(crate) const FACING: f64 = 1.0 / (1 << 19) as f64;
 
+/// Pixels by which a rasteriser may move the outline of a polygon.
+pub(crate) const SNAP: f64 = 1.0 / 128.0;
+
 /// The centre and the offsets at which a pixel is probed, from the inside outwards.
 pub(crate) const PROBES: usize = 1 + 6 * 8;
 

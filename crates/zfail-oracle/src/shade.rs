@@ -7,7 +7,7 @@ use crate::{
     bvh::Bvh,
     cast::CastTable,
     cone::{self, Apex, Place, Slack},
-    guard::{Doubt, FACING, Guards, ROUNDING},
+    guard::{Doubt, FACING, Guards, ROUNDING, SNAP},
     lens::{Lens, Ray},
     sight::{Face, surface_error},
     soup::{Soup, Triangle},
@@ -174,8 +174,12 @@ impl Shader<'_> {
     /// Whether rounded depths may put the spot on the other side of a side of the volume that its own face throws. The
     /// sides are nearly coplanar with a face that the light grazes.
     fn may_leave_own_cone(&self, triangle: &Triangle, facing: Facing, spot: &Spot) -> bool {
-        let Slack { line, radius, .. } = spot.slack;
-        ![spot.point - line, spot.point + line].into_iter().all(|p| self.is_within(triangle, facing, p, radius))
+        let Slack { ellipse: [u, w], line, radius } = spot.slack;
+        // A rasteriser snaps the face's edge and the side that stands on it to the same place, which may be anywhere
+        // within this; so near the edge their depths are the same.
+        let snap = (u.length_squared() + w.length_squared()).sqrt() * SNAP / self.guards.epsilon;
+        let margin = radius + snap;
+        ![spot.point - line, spot.point + line].into_iter().all(|p| self.is_within(triangle, facing, p, margin))
     }
 
     /// Whether `point`, with a margin, lies in the cone of `triangle` or of faces that continue it.

@@ -6,7 +6,7 @@
 use crate::{
     bvh::Bvh,
     cone::{self, Place, Slack},
-    guard::{Guards, PROBES, ROUNDING},
+    guard::{Guards, PROBES, ROUNDING, SNAP},
     lens::{Lens, Ray},
     soup::{Soup, Triangle},
 };
@@ -189,7 +189,6 @@ impl Looker<'_> {
 
     /// Whether a rasteriser that snaps vertices may draw a triangle, which no probe has met, at the pixel's centre.
     fn may_cover(&self, x: f64, y: f64, candidate: &Candidate<'_>, first: f64) -> bool {
-        const SNAP: f64 = 1.0 / 256.0;
         let aim = self.lens.aim(&self.lens.ray(x, y));
         let ellipse = self.lens.per_pixel().map(|axis| axis * SNAP);
         let slack = Slack { ellipse, line: DVec3::ZERO, radius: 0.0 };

@@ -45,7 +45,7 @@ fn silhouette(c: &mut Criterion) {
             b.iter(|| {
                 casting::weights(&topology, &[Casting::Front], black_box(light), &mut weights);
                 indices.clear();
-                volume::build(&topology, &weights, false, &mut indices)
+                volume::build(&topology, &weights, &weights, false, &mut indices)
             });
         });
     }

@@ -11,7 +11,9 @@
 //! very depths of the depth pass; those that cast from their back form a list of their own, drawn with the stencil
 //! operations exchanged instead of their winding.
 
-use crate::topology::Topology;
+use crate::casting;
+use crate::topology::{Topology, same_winding};
+use glam::DVec4;
 use std::ops::Range;
 
 /// One caster's closed volume: ranges into a shared index list.
@@ -72,8 +74,9 @@ pub const fn far(vertex: u32) -> u32 {
     vertex << 1 | 1
 }
 
-/// Appends the volume of weights `c` to `indices`.
-pub fn build(topology: &Topology, c: &[i8], directional: bool, indices: &mut Vec<u32>) -> Volume {
+/// Appends the volume of weights `c` to `indices`. The light cap is drawn by `cap` instead, the same chain with the
+/// weights of coincident triangles gathered on one of them ([`cap_weights`]).
+pub fn build(topology: &Topology, c: &[i8], cap: &[i8], directional: bool, indices: &mut Vec<u32>) -> Volume {
     let mark = |indices: &Vec<u32>| indices.len() as u32;
     let start = mark(indices);
     topology.boundary(c, |[lo, hi], m| {
@@ -100,15 +103,42 @@ pub fn build(topology: &Topology, c: &[i8], directional: bool, indices: &mut Vec
     }
     let dark_cap = sides.end..mark(indices);
 
-    let mut cap = |wanted: i8| {
-        for (&[x, y, z], &weight) in topology.triangles.iter().zip(c) {
-            if weight == wanted {
+    let mut draw_cap = |sign: i8| {
+        for (&[x, y, z], &weight) in topology.triangles.iter().zip(cap) {
+            for _ in 0..(weight * sign).max(0) {
                 indices.extend([near(x), near(y), near(z)]);
             }
         }
         mark(indices)
     };
-    let light_cap = dark_cap.end..cap(1);
-    let light_cap_reversed = light_cap.end..cap(-1);
+    let light_cap = dark_cap.end..draw_cap(1);
+    let light_cap_reversed = light_cap.end..draw_cap(-1);
     Volume { sides, dark_cap, light_cap, light_cap_reversed }
+}
+
+/// Which of each group of twins is visible to the homogeneous `eye` (object space), if either is: the one whose front
+/// faces it. Where both are drawn the depth buffer holds the nearer, so that either will do.
+pub fn visible_twins(topology: &Topology, eye: DVec4, out: &mut Vec<u32>) {
+    out.clear();
+    out.extend(topology.twins.iter().map(|group| {
+        let faces = |&&t: &&u32| casting::facing(topology.corners(t as usize), eye) > 0;
+        group.iter().find(faces).copied().unwrap_or(group[0])
+    }));
+}
+
+/// Weights `c` with those of twins gathered on the `visible` one of each group.
+pub fn cap_weights(topology: &Topology, c: &[i8], visible: &[u32], out: &mut Vec<i8>) {
+    out.clear();
+    out.extend_from_slice(c);
+    for (group, &visible) in topology.twins.iter().zip(visible) {
+        for &t in group.iter().filter(|&&t| t != visible) {
+            let same = same_winding(topology.triangles[t as usize], topology.triangles[visible as usize]);
+            let moved = if same { c[t as usize] } else { -c[t as usize] };
+            // A hundred duplicates and more keep their own caps.
+            if let Some(sum) = out[visible as usize].checked_add(moved).filter(|sum| sum.unsigned_abs() <= 100) {
+                out[visible as usize] = sum;
+                out[t as usize] = 0;
+            }
+        }
+    }
 }

@@ -100,7 +100,7 @@ proptest! {
             let mut c = Vec::new();
             casting::weights(&topology, &vec![rule; topology.parts.len()], light, &mut c);
             let mut indices = Vec::new();
-            let volume = volume::build(&topology, &c, light.w == 0.0, &mut indices);
+            let volume = volume::build(&topology, &c, &c, light.w == 0.0, &mut indices);
             prop_assert_eq!(open_edges(&indices, &volume, light.w == 0.0), 0);
         }
     }
@@ -111,7 +111,7 @@ proptest! {
         let degenerate = |t: &[u32; 3]| t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
         let c: Vec<i8> = topology.triangles.iter().zip(weights).map(|(t, c)| if degenerate(t) { 0 } else { c }).collect();
         let mut indices = Vec::new();
-        let volume = volume::build(&topology, &c, false, &mut indices);
+        let volume = volume::build(&topology, &c, &c, false, &mut indices);
         prop_assert_eq!(open_edges(&indices, &volume, false), 0);
         // Negative control: without one drawn triangle it is open.
         if volume.sides.end > volume.sides.start {
@@ -134,11 +134,33 @@ proptest! {
             let mut c = Vec::new();
             casting::weights(&topology, &vec![rule; topology.parts.len()], light, &mut c);
             let mut indices = Vec::new();
-            let volume = volume::build(&topology, &c, light.w == 0.0, &mut indices);
+            let volume = volume::build(&topology, &c, &c, light.w == 0.0, &mut indices);
             let expected = layers(&topology, &c, light, at);
             prop_assert_eq!(crossings(&topology, &indices, &volume, light, at, along), expected);
             prop_assert!(expected >= 0);
         }
+    }
+}
+
+#[test]
+fn twins_cast_in_the_order_of_the_visible_one() {
+    // A sheet with a back: the same triangle twice, wound against itself and starting elsewhere, and once more.
+    let positions = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]];
+    let topology = Topology::new(&positions, &[[0, 1, 2], [0, 2, 1], [1, 2, 0]], |_| true).unwrap();
+    assert_eq!(topology.twins, [[0, 1, 2]]);
+    let light = Vec4::new(0.5, 0.5, 3.0, 1.0);
+    let mut c = Vec::new();
+    casting::weights(&topology, &[Casting::Double], light, &mut c);
+    assert_eq!(c, [1, -1, 1]);
+    for (eye_z, expected) in [(4.0, [3, 0, 0]), (-4.0, [0, -3, 0])] {
+        let (mut visible, mut cap) = (Vec::new(), Vec::new());
+        volume::visible_twins(&topology, DVec4::new(0.3, 0.4, eye_z, 1.0), &mut visible);
+        volume::cap_weights(&topology, &c, &visible, &mut cap);
+        assert_eq!(cap, expected);
+        let mut indices = Vec::new();
+        let volume = volume::build(&topology, &c, &cap, false, &mut indices);
+        assert_eq!(open_edges(&indices, &volume, false), 0);
+        assert_eq!(volume.triangles(), [18, 3, 3]);
     }
 }
 

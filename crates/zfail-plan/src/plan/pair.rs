@@ -28,6 +28,10 @@ pub(super) struct Pair {
     clusters: Clusters,
     pieces: Vec<Piece>,
     masked: Vec<i8>,
+    cap: Vec<i8>,
+    /// The visible one of each group of coincident triangles for which `pieces` were built, and scratch.
+    visible: Vec<u32>,
+    now_visible: Vec<u32>,
 }
 
 /// A closed volume of some of the pair's triangles.
@@ -46,6 +50,9 @@ impl Pair {
         let light = object_light(caster, kind)?;
         if self.mesh != caster.mesh || self.light != light {
             self.weighed = false;
+        }
+        if self.mesh != caster.mesh {
+            self.now_visible.clear();
         }
         self.mesh = caster.mesh;
         self.light = light;
@@ -86,10 +93,22 @@ impl Pair {
 
     /// Builds the volume of every batch (and every planar cap), unless they are known.
     pub fn build(&mut self, frame: &Frame<'_>) {
-        if self.built {
+        let caster = &frame.casters[self.caster];
+        let topology = caster.topology;
+        if !topology.twins.is_empty() {
+            let object_from_world = caster.world_from_object.inverse();
+            let eye = match frame.view.projection {
+                Projection::Perspective { .. } => object_from_world.transform_point3(frame.view.eye()).extend(1.0),
+                Projection::Orthographic { .. } => {
+                    object_from_world.transform_vector3(frame.view.world_from_view.matrix3.z_axis).extend(0.0)
+                }
+            };
+            volume::visible_twins(topology, eye, &mut self.now_visible);
+        }
+        if self.built && self.visible == self.now_visible {
             return;
         }
-        let topology = frame.casters[self.caster].topology;
+        self.visible.clone_from(&self.now_visible);
         self.clusters.clear();
         if self.planar {
             self.clusters.fill(topology, &mut self.weights, self.light);
@@ -109,11 +128,12 @@ impl Pair {
             if used == self.pieces.len() {
                 self.pieces.push(Piece::default());
             }
+            volume::cap_weights(topology, &self.masked, &self.visible, &mut self.cap);
             let piece = &mut self.pieces[used];
             piece.batch = batch;
             piece.cap = self.clusters.normals.get(usize::from(cap)).copied();
             piece.indices.clear();
-            piece.volume = volume::build(topology, &self.masked, self.light.w == 0.0, &mut piece.indices);
+            piece.volume = volume::build(topology, &self.masked, &self.cap, self.light.w == 0.0, &mut piece.indices);
             used += 1;
         }
         self.pieces.truncate(used);

@@ -12,9 +12,11 @@
 mod closed;
 mod embedded;
 mod parts;
+mod twins;
 mod weld;
 
 pub use parts::{Part, Shape};
+pub use twins::same_winding;
 
 use crate::scene::Bounds;
 use rayon::prelude::*;
@@ -83,6 +85,8 @@ pub struct Topology {
     pub parts: Vec<Part>,
     /// Casting triangles, part by part.
     pub by_part: Vec<u32>,
+    /// Groups of casting triangles over the same three points, in any order: duplicates and sheets with a back.
+    pub twins: Vec<Vec<u32>>,
     edges: Vec<Edge>,
     fans: Vec<Fan>,
     fan_triangles: Vec<u32>,
@@ -124,6 +128,7 @@ impl Topology {
             triangles,
             parts: Vec::new(),
             by_part: Vec::new(),
+            twins: Vec::new(),
             edges: Vec::with_capacity(uses.len() / 2),
             fans: Vec::new(),
             fan_triangles: Vec::new(),
@@ -142,6 +147,7 @@ impl Topology {
             }
         }
         parts::find(&mut topology);
+        topology.twins = twins::find(&topology);
         Ok(topology)
     }
 

@@ -44,7 +44,7 @@ pub const SCENES: &[Entry] = &[
     entry("jail", "A light that shines out horizontally through a jail-cell door (Carmack's letter)"),
     entry("nested", "The eye amid nested, pierced shells, in many volumes at once (Carmack's letter)"),
     entry("open", "Open, non-manifold, inside-out and damaged meshes, mirrored and sheared (Kim, Kim & Turk 2008)"),
-    entry("stacked", "1000 and 256 stacked sheets, more than 8 bits of stencil count (E&K section 5)"),
+    entry("stacked", "1000 and 256 stacked sheets, more than 8 bits of stencil count (E&K section 4.1)"),
     entry("ortho", "A diorama under an orthographic camera, where infinity has no finite depth"),
     entry("stage", "Three coloured spot lights on dancing figures (McGuire et al., Image 7)"),
 ];

@@ -1,5 +1,5 @@
 //! 1000 and 256 stacked sheets between light and floor: counts beyond the 8 bits of the stencil buffer
-//! (E&K section 5; McGuire et al. section 4 on the 256th stair).
+//! (E&K section 4.1; McGuire et al. section 4 on the 256th stair).
 
 use glam::{DVec2, DVec3};
 use zfail_plan::scene::{Mesh, Scene};

@@ -98,7 +98,7 @@ fn arc(radius: f64, n: usize, from: f64, to: f64) -> Vec<DVec2> {
     (0..=n).map(|k| DVec2::from_angle(from + (to - from) * k as f64 / n as f64) * radius).collect()
 }
 
-/// A smooth curve through `points` (centripetal enough for profiles: uniform Catmull-Rom), `steps` pieces per span;
+/// A smooth curve through `points` (uniform Catmull-Rom) in `steps` pieces per span;
 /// negative radii that it overshoots to become 0.
 #[must_use]
 pub fn curve(points: &[(f64, f64)], steps: usize) -> Vec<DVec2> {
