@@ -11,6 +11,7 @@ mod error;
 mod gallery;
 mod info;
 mod input;
+mod mesa;
 mod names;
 mod output;
 mod render;
@@ -20,6 +21,7 @@ use clap::Parser;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    mesa::silence();
     let result = match Cli::try_parse() {
         Ok(cli) => console::contain_faults(|| run(&cli.command)),
         Err(help_or_error) => console::explain(&help_or_error),

@@ -88,6 +88,8 @@ impl Close<'_> {
 struct Spot {
     /// The pixel's centre in the image.
     pixel: [f64; 2],
+    ray: Ray,
+    depth: f64,
     point: DVec3,
     slack: Slack,
 }
@@ -143,7 +145,7 @@ impl Shader<'_> {
         let ellipse = std::array::from_fn(|i| (axes[i] - ray.direction * slopes[i]) * scale);
         let line = ray.direction * surface_error(lens, self.guards, triangle, ray, depth);
         let radius = ROUNDING * (triangle.extent + depth.abs() * ray.direction.length());
-        Some(Spot { pixel, point, slack: Slack { ellipse, line, radius } })
+        Some(Spot { pixel, ray: *ray, depth, point, slack: Slack { ellipse, line, radius } })
     }
 
     /// The face's own part in blocking the light, by the rule that the lit point lies just on the eye's side of it.
@@ -240,6 +242,9 @@ impl Shader<'_> {
                 }
                 return;
             }
+            if receiver.touches(triangle) && self.weight(triangle, self.facing(triangle) == Facing::Front) != 0 {
+                self.check_fold(receiver, triangle, spot, doubts);
+            }
             match self.crossing(triangle, spot, doubts) {
                 Crossing::No => {}
                 Crossing::Yes(weight) => certain.add(weight),
@@ -252,6 +257,30 @@ impl Shader<'_> {
             }
         });
         close
+    }
+
+    /// Doubts a spot so close to the outline of its caster that the depths of the face seen and of the one that turns
+    /// away behind it are the same within rounding: which of their caps lies behind the other is open.
+    fn check_fold(&self, face: &Triangle, behind: &Triangle, spot: &Spot, doubts: &mut Doubts) {
+        let steepness = |t: &Triangle| t.normal.dot(spot.ray.direction);
+        if (steepness(face) > 0.0) == (steepness(behind) > 0.0) {
+            return;
+        }
+        let snap = self.lens.per_pixel().map(|axis| axis * SNAP);
+        let uncertainty = |t: &Triangle| {
+            let [u, w] = snap.map(|axis| t.normal.dot(axis) / steepness(t));
+            let error = surface_error(self.lens, self.guards, t, &spot.ray, spot.depth);
+            u.hypot(w) * self.lens.spread(spot.depth).abs() + error
+        };
+        let gap = (Lens::meet(&spot.ray, behind.v[0], behind.normal) - spot.depth).abs();
+        let slack = Slack { ellipse: snap, ..Slack::NONE };
+        let normals = self.lens.apex().edge_normals(&behind.v);
+        let covers = || cone::place(&behind.v, &normals, self.lens.aim(&spot.ray), &slack) != Place::Outside;
+        // Not a number, which an edge-on face gives, is no clear gap.
+        let is_clear = gap > uncertainty(face) + uncertainty(behind);
+        if !is_clear && covers() {
+            doubts.add(Doubt::Depth);
+        }
     }
 
     /// Whether light crosses `triangle` on its way to wherever the spot may move.

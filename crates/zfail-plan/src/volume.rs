@@ -19,9 +19,9 @@ use std::ops::Range;
 /// One caster's closed volume: ranges into a shared index list.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Volume {
-    /// Quads (point light) or triangles (directional light) between silhouette edges and infinity.
+    /// Quads, or triangles where they converge, between silhouette edges and infinity.
     pub sides: Range<u32>,
-    /// The casting triangles at infinity; empty for directional lights, whose sides meet in one point.
+    /// The casting triangles at infinity; empty where sides converge.
     pub dark_cap: Range<u32>,
     /// Casting triangles whose front faces the light, as stored.
     pub light_cap: Range<u32>,
@@ -75,15 +75,16 @@ pub const fn far(vertex: u32) -> u32 {
 }
 
 /// Appends the volume of weights `c` to `indices`. The light cap is drawn by `cap` instead, the same chain with the
-/// weights of coincident triangles gathered on one of them ([`cap_weights`]).
-pub fn build(topology: &Topology, c: &[i8], cap: &[i8], directional: bool, indices: &mut Vec<u32>) -> Volume {
+/// weights of coincident triangles gathered on one of them ([`cap_weights`]). With `converging` sides all extruded vertices
+/// are one point, as the parallel rays of a directional light meet at infinity.
+pub fn build(topology: &Topology, c: &[i8], cap: &[i8], converging: bool, indices: &mut Vec<u32>) -> Volume {
     let mark = |indices: &Vec<u32>| indices.len() as u32;
     let start = mark(indices);
     topology.boundary(c, |[lo, hi], m| {
         // The cap runs along the edge one way, the side has to run the other way.
         let (a, b) = if m > 0 { (lo, hi) } else { (hi, lo) };
         for _ in 0..m.unsigned_abs() {
-            if directional {
+            if converging {
                 indices.extend([near(b), near(a), far(0)]);
             } else {
                 indices.extend([near(b), near(a), far(a), near(b), far(a), far(b)]);
@@ -92,7 +93,7 @@ pub fn build(topology: &Topology, c: &[i8], cap: &[i8], directional: bool, indic
     });
     let sides = start..mark(indices);
 
-    if !directional {
+    if !converging {
         for (&[x, y, z], &weight) in topology.triangles.iter().zip(c) {
             match weight {
                 0 => {}

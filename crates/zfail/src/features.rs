@@ -4,11 +4,10 @@ use wgpu::{Features, TextureFormat};
 
 /// Those of the adapter's features that make shadows better; none is required.
 ///
-/// `DEPTH32FLOAT_STENCIL8` gives reversed depth its even precision, `DEPTH_CLIP_CONTROL` lets the rasteriser clamp depth
-/// for cameras with a finite far plane (E&K 2002, section 3.4, "depth clamping").
+/// `DEPTH32FLOAT_STENCIL8` gives reversed depth its even precision.
 #[must_use]
 pub fn wanted_features(adapter: Features) -> Features {
-    adapter & (Features::DEPTH32FLOAT_STENCIL8 | Features::DEPTH_CLIP_CONTROL)
+    adapter & Features::DEPTH32FLOAT_STENCIL8
 }
 
 /// The best depth-stencil format of a device with these features: 32-bit float depth, or else 24 bits or more.

@@ -5,7 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::DAffine3;
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, Device, Queue};
 use zfail_plan::plan::{Draw, FramePlan};
-use zfail_plan::view::{Projection, View};
+use zfail_plan::view::View;
 
 /// `Draw` of `volume.wgsl`.
 #[repr(C)]
@@ -14,7 +14,6 @@ pub(crate) struct DrawRecord {
     clip_from_object: [[f32; 4]; 4],
     light: [f32; 4],
     cap: [f32; 4],
-    view: [f32; 4],
 }
 
 /// Buffers that grow to the largest frame seen.
@@ -43,12 +42,10 @@ impl FrameBuffers {
         view: &View,
         world_from_object: impl Fn(u32) -> DAffine3,
     ) -> Result<bool, Error> {
-        let perspective = matches!(view.projection, Projection::Perspective { .. });
         let record = |draw: &Draw| DrawRecord {
             clip_from_object: view.clip_from_object(&world_from_object(draw.caster)).to_cols_array_2d(),
             light: draw.light.to_array(),
             cap: draw.cap.to_array(),
-            view: [f32::from(u8::from(perspective)), 0.0, 0.0, 0.0],
         };
         self.records.clear();
         self.records.extend(plan.draws.iter().map(record));

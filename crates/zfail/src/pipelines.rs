@@ -8,10 +8,10 @@
 //! told apart in one draw (E&K 2002, section 4.1, "two-sided stencil testing").
 
 use wgpu::{
-    BindGroupLayout, ColorTargetState, ColorWrites, CompareFunction, DepthStencilState, Device, Features,
-    FragmentState, FrontFace, MultisampleState, PipelineCompilationOptions, PipelineLayoutDescriptor, PrimitiveState,
-    RenderPipeline, RenderPipelineDescriptor, ShaderModule, StencilFaceState, StencilOperation, StencilState,
-    TextureFormat, VertexState,
+    BindGroupLayout, ColorTargetState, ColorWrites, CompareFunction, DepthStencilState, Device, FragmentState,
+    FrontFace, MultisampleState, PipelineCompilationOptions, PipelineLayoutDescriptor, PrimitiveState, RenderPipeline,
+    RenderPipelineDescriptor, ShaderModule, StencilFaceState, StencilOperation, StencilState, TextureFormat,
+    VertexState,
 };
 
 /// The formats of the pass into which shadows are encoded.
@@ -40,22 +40,15 @@ const BATCH_MASK: u32 = 0x7f;
 /// Pipelines for one [`Target`].
 #[derive(Debug)]
 pub struct Pipelines {
-    /// Infinite far plane: nothing of a volume lies beyond it.
-    infinite: Set,
-    /// Finite far plane: depth is clamped.
+    /// For everything that lies before the far plane, be it at infinity.
+    plain: Set,
+    /// For what a finite far plane would clip: depth is clamped.
     clamped: Set,
     pub(crate) fold: RenderPipeline,
 }
 
-/// Pipelines that differ in winding and counting.
-#[derive(Debug)]
-struct Set {
-    /// Sides and dark caps, by `[batched][clockwise]`.
-    extruded: [[RenderPipeline; 2]; 2],
-    /// Light caps, likewise; `None` if the same will do. They need the depth of the depth pass to the last bit, so a
-    /// fragment shader must not compute it.
-    light_cap: Option<[[RenderPipeline; 2]; 2]>,
-}
+/// Pipelines that differ in winding and counting, by `[batched][clockwise]`.
+type Set = [[RenderPipeline; 2]; 2];
 
 /// What a draw needs of its pipeline.
 #[derive(Clone, Copy, Debug)]
@@ -71,43 +64,24 @@ pub(crate) struct Variant {
 impl Pipelines {
     pub(crate) fn new(device: &Device, layout: &BindGroupLayout, module: &ShaderModule, target: &Target<'_>) -> Self {
         let maker = Maker { device, layout, module, target };
-        let plain = maker.set(&VolumeStages { vertex: "volume", fragment: None, unclipped: false });
-        let clamped = if device.features().contains(Features::DEPTH_CLIP_CONTROL) {
-            maker.set(&VolumeStages { vertex: "volume", fragment: None, unclipped: true })
-        } else {
-            let by_hand = maker.set(&VolumeStages {
-                vertex: "clamped_volume",
-                fragment: Some("clamped_depth"),
-                unclipped: false,
-            });
-            let caps = maker.set(&VolumeStages { vertex: "volume", fragment: None, unclipped: false });
-            Set { extruded: by_hand.extruded, light_cap: Some(caps.extruded) }
-        };
-        Self { infinite: plain, clamped, fold: maker.fold() }
+        Self {
+            plain: maker.set("volume", None),
+            clamped: maker.set("clamped_volume", Some("clamped_depth")),
+            fold: maker.fold(),
+        }
     }
 
     /// The pipeline for sides and dark caps.
     pub(crate) fn extruded(&self, v: Variant) -> &RenderPipeline {
-        &self.set(v).extruded[usize::from(v.batched)][usize::from(v.clockwise)]
+        let set = if v.finite { &self.clamped } else { &self.plain };
+        &set[usize::from(v.batched)][usize::from(v.clockwise)]
     }
 
-    /// The pipeline for light caps, and whether it differs from that for sides.
-    pub(crate) fn light_cap(&self, v: Variant) -> (&RenderPipeline, bool) {
-        match &self.set(v).light_cap {
-            Some(own) => (&own[usize::from(v.batched)][usize::from(v.clockwise)], true),
-            None => (self.extruded(v), false),
-        }
+    /// The pipeline for light caps. They need the depth of the depth pass to the last bit, so no fragment shader may
+    /// compute it; and like the surfaces they belong to, none lies beyond the far plane.
+    pub(crate) fn light_cap(&self, v: Variant) -> &RenderPipeline {
+        &self.plain[usize::from(v.batched)][usize::from(v.clockwise)]
     }
-
-    fn set(&self, v: Variant) -> &Set {
-        if v.finite { &self.clamped } else { &self.infinite }
-    }
-}
-
-struct VolumeStages {
-    vertex: &'static str,
-    fragment: Option<&'static str>,
-    unclipped: bool,
 }
 
 struct Maker<'a> {
@@ -118,23 +92,19 @@ struct Maker<'a> {
 }
 
 impl Maker<'_> {
-    fn set(&self, stages: &VolumeStages) -> Set {
-        let extruded = [false, true].map(|batched| {
+    fn set(&self, vertex: &str, fragment: Option<&str>) -> Set {
+        [false, true].map(|batched| {
             [FrontFace::Ccw, FrontFace::Cw].map(|front_face| {
-                let decrement = count(StencilOperation::DecrementWrap);
-                let increment = count(StencilOperation::IncrementWrap);
                 let stencil = StencilState {
-                    front: decrement,
-                    back: increment,
+                    front: count(StencilOperation::DecrementWrap),
+                    back: count(StencilOperation::IncrementWrap),
                     read_mask: 0,
                     write_mask: if batched { BATCH_MASK } else { 0xff },
                 };
-                let primitive =
-                    PrimitiveState { front_face, unclipped_depth: stages.unclipped, ..PrimitiveState::default() };
-                self.pipeline(stages.vertex, stages.fragment, primitive, CompareFunction::Greater, stencil)
+                let primitive = PrimitiveState { front_face, ..PrimitiveState::default() };
+                self.pipeline(vertex, fragment, primitive, CompareFunction::Greater, stencil)
             })
-        });
-        Set { extruded, light_cap: None }
+        })
     }
 
     /// Where a batch left a count, sets the sticky bit and clears the count.

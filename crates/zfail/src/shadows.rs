@@ -210,17 +210,16 @@ impl Shadows {
         let base = (self.first_positions[d as usize] * 2).cast_signed();
         let volume = &draw.volume;
         let variant = Variant { finite: self.finite, batched, clockwise: draw.mirrored };
-        let (cap_pipeline, differs) = pipelines.light_cap(variant);
         pass.set_pipeline(pipelines.extruded(variant));
-        if differs {
+        if self.finite {
             pass.draw_indexed(volume.sides.start..volume.dark_cap.end, base, d..d + 1);
-            pass.set_pipeline(cap_pipeline);
+            pass.set_pipeline(pipelines.light_cap(variant));
             pass.draw_indexed(volume.light_cap.clone(), base, d..d + 1);
         } else {
             pass.draw_indexed(volume.outward(), base, d..d + 1);
         }
         if !volume.light_cap_reversed.is_empty() {
-            pass.set_pipeline(pipelines.light_cap(Variant { clockwise: !variant.clockwise, ..variant }).0);
+            pass.set_pipeline(pipelines.light_cap(Variant { clockwise: !variant.clockwise, ..variant }));
             pass.draw_indexed(volume.light_cap_reversed.clone(), base, d..d + 1);
         }
     }

@@ -5,10 +5,8 @@ struct Draw {
     clip_from_object: mat4x4<f32>,
     // Object space: (position, 1) or (towards the light, 0).
     light: vec4<f32>,
-    // Object space plane of a finite dark cap; zero normal for a cap at infinity.
+    // Object space plane of a finite dark cap (orthographic views); zero normal for a cap at infinity.
     cap: vec4<f32>,
-    // x: 1 for a perspective view, 0 for an orthographic one.
-    view: vec4<f32>,
 }
 
 @group(0) @binding(0) var<storage, read> positions: array<f32>;
@@ -34,15 +32,10 @@ fn place(index: u32, instance: u32) -> vec4<f32> {
         return draw.clip_from_object * vec4<f32>(p * rate + away * (draw.cap.w - dot(draw.cap.xyz, p)), rate);
     }
     var clip = draw.clip_from_object * vec4<f32>(away, 0.0);
-    if draw.view.x > 0.5 {
-        // A direction almost in the image plane: its w is all rounding, and some rasterisers lose such vertices.
-        let least = 1e-5 * max(abs(clip.x), abs(clip.y));
-        if abs(clip.w) < least {
-            clip.w = least;
-        }
-    } else if max(abs(clip.x), abs(clip.y)) < 1e-7 * abs(clip.z) {
-        // A direction along the axis of an orthographic view would be (0, 0, z, 0), which is no point of the image.
-        clip.x += 1e-6 * abs(clip.z);
+    // A direction almost in the image plane: its w is all rounding, and some rasterisers lose such vertices.
+    let least = 1e-5 * max(abs(clip.x), abs(clip.y));
+    if abs(clip.w) < least {
+        clip.w = least;
     }
     return clip;
 }
@@ -56,8 +49,8 @@ fn volume(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: 
 @fragment
 fn nothing() {}
 
-// Depth clamping by hand, for devices without it: the rasteriser sees a depth it will not clip, and the fragment
-// gets the clamped true one. Interpolated per sample, because every sample is tested on its own.
+// Depth clamping (Everitt & Kilgard 2002, section 3.4) by hand, for a finite far plane: the rasteriser sees a depth it will
+// not clip, and the fragment gets the clamped true one, per sample, because every sample is tested on its own.
 struct ClampedVolume {
     @invariant @builtin(position) clip: vec4<f32>,
     @location(0) @interpolate(perspective, sample) depth: vec2<f32>,

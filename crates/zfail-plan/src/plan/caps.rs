@@ -1,7 +1,8 @@
 //! Finite dark caps for orthographic views.
 //!
 //! All rays of an orthographic view meet in one point at infinity, so a dark cap there has no area on the image and
-//! cannot count. Planes beyond everything in view take its place. A planar cap needs all its casting triangles in the
+//! cannot count. Planes beyond everything in view take its place, for directional lights too, whose point of convergence
+//! not every rasteriser can place. A planar cap needs all its casting triangles in the
 //! open half space before the light; where the light is among them, they are divided into clusters with a plane each,
 //! which any subset of triangles allows, since its volume is closed by itself.
 //!
@@ -9,6 +10,7 @@
 
 use super::Caster;
 use crate::casting::ObjectLight;
+use crate::scene::Bounds;
 use crate::topology::Topology;
 use crate::view::{Projection, View};
 use glam::{DVec3, Vec4};
@@ -37,10 +39,14 @@ impl Clusters {
 
     /// Divides the triangles with a weight; takes the weight of those that no plane can cap.
     pub fn fill(&mut self, topology: &Topology, weights: &mut [i8], light: ObjectLight) {
+        self.of.resize(weights.len(), 0);
+        if light.w == 0.0 {
+            self.normals.push(-light.truncate().as_dvec3().normalize_or_zero());
+            return;
+        }
         let origin = light.truncate().as_dvec3();
         let directions = |t: usize| topology.corners(t).map(|p| (p - origin).normalize_or_zero());
         let spread = |u: DVec3, d: [DVec3; 3]| d.iter().map(|v| u.dot(*v)).fold(f64::INFINITY, f64::min);
-        self.of.resize(weights.len(), 0);
 
         // One plane for all, if the light is outside of the caster.
         let middle = (topology.bounds().center() - origin).normalize_or_zero();
@@ -94,20 +100,20 @@ fn compass() -> Vec<DVec3> {
 pub(super) fn plane(u: DVec3, light: ObjectLight, view: &View, caster: &Caster<'_>) -> Vec4 {
     let Projection::Orthographic { ymag, near, far } = view.projection else { return Vec4::ZERO };
     let object_from_world = caster.world_from_object.inverse();
-    let origin = light.truncate().as_dvec3();
     let xmag = ymag * view.aspect();
-    let mut reach: f64 = 0.0;
-    let mut size: f64 = 0.0;
+    let mut corners = Bounds::EMPTY;
+    // A point light itself has to lie before its plane.
+    let mut reach = if light.w == 0.0 { f64::NEG_INFINITY } else { u.dot(light.truncate().as_dvec3()) };
     for x in [-xmag, xmag] {
         for y in [-ymag, ymag] {
             for z in [-near, -far] {
                 let corner = view.world_from_view.transform_point3(DVec3::new(x, y, z));
-                let from_light = object_from_world.transform_point3(corner) - origin;
-                reach = reach.max(u.dot(from_light));
-                size = size.max(from_light.length());
+                let corner = object_from_world.transform_point3(corner);
+                corners.add(corner);
+                reach = reach.max(u.dot(corner));
             }
         }
     }
-    // Clear of the farthest corner, and always beyond the light.
-    u.extend(u.dot(origin) + reach + 0.01 * size).as_vec4()
+    // Clear of the farthest corner.
+    u.extend(reach + 0.01 * corners.half().length()).as_vec4()
 }

@@ -64,7 +64,7 @@ impl Pair {
     /// Decides the facing of every triangle, unless it is known.
     pub fn weigh(&mut self, frame: &Frame<'_>) {
         // Clusters take the weight of triangles that no plane can cap.
-        let planar = self.light.w != 0.0 && matches!(frame.view.projection, Projection::Orthographic { .. });
+        let planar = matches!(frame.view.projection, Projection::Orthographic { .. });
         if self.weighed && self.planar == planar {
             return;
         }
@@ -133,7 +133,8 @@ impl Pair {
             piece.batch = batch;
             piece.cap = self.clusters.normals.get(usize::from(cap)).copied();
             piece.indices.clear();
-            piece.volume = volume::build(topology, &self.masked, &self.cap, self.light.w == 0.0, &mut piece.indices);
+            let converging = self.light.w == 0.0 && !self.planar;
+            piece.volume = volume::build(topology, &self.masked, &self.cap, converging, &mut piece.indices);
             used += 1;
         }
         self.pieces.truncate(used);

@@ -124,6 +124,7 @@ fn read(path: &Path, limits: &Limits) -> Result<(Scene, FileInfo)> {
     let held = instances::read(&document, &graph, &mut scene)?;
     lights::read_lights(&document.root, &graph, &held, &document.budget, &mut scene)?;
     lights::read_cameras(&document.root, &graph, &mut scene);
+    read_surroundings(&document.root, &mut scene);
     if scene.instances.is_empty() {
         scene.notices.push("the scene has no triangles".into());
     }
@@ -161,6 +162,17 @@ fn read_materials(document: &Document<'_>, folder: &Path, scene: &mut Scene) -> 
     scene.textures = textures;
     scene.materials = materials::materials(&document.root, &index, &mut scene.notices);
     Ok(())
+}
+
+/// The ambient and background radiance that [`crate::write`] keeps in the scene's extras.
+fn read_surroundings(root: &Root, scene: &mut Scene) {
+    let Some(roots) = root.scenes.get(root.scene.unwrap_or(0)) else { return };
+    let color = |name: &str| -> Option<[f32; 3]> {
+        let color: [f32; 3] = serde_json::from_value(roots.extras.get(name)?.clone()).ok()?;
+        color.iter().all(|c| c.is_finite() && *c >= 0.0).then_some(color)
+    };
+    scene.ambient = color("ambient").unwrap_or_default();
+    scene.background = color("background").unwrap_or_default();
 }
 
 /// More notices than anybody reads are cut short.

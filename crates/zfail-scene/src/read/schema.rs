@@ -57,6 +57,7 @@ pub(super) struct Lights {
 #[serde(default)]
 pub(super) struct SceneRoots {
     pub nodes: Vec<usize>,
+    pub extras: Value,
 }
 
 #[derive(Debug, Default, Deserialize)]

@@ -143,6 +143,7 @@ fn rounded(material: &Material) -> Material {
 
 /// Panics where `after` differs from `before`; `rounding` is what transforms and directions may differ by.
 fn assert_same(before: &Scene, after: &Scene, rounding: f64) {
+    assert_eq!((before.ambient, before.background), (after.ambient, after.background));
     assert!(after.notices.is_empty(), "{:?}", after.notices);
     assert_eq!(after.meshes.len(), before.meshes.len());
     assert_eq!(after.instances.len(), before.instances.len());

@@ -1,0 +1,25 @@
+//! Random scenes that were once wrong, each with what was the matter.
+
+use zfail_exact::{bench, kinds::Kind};
+use zfail_render::{Gpu, GpuOptions, Settings};
+
+/// Kind, seed, size and story.
+const SCENES: [(Kind, u64, [u32; 2], &str); 4] = [
+    (Kind::Soup, 1, [192, 120], "a culled twin's light cap lay before the visible triangle by rounding"),
+    (Kind::Soup, 1003, [256, 160], "the same"),
+    (Kind::NonManifold, 1073, [256, 160], "the same, in a sheet with a back"),
+    (Kind::NonManifold, 1081, [256, 160], "the same"),
+];
+
+#[test]
+fn what_was_wrong_once_is_right() {
+    let gpu = Gpu::new(&GpuOptions::default()).expect("a graphics adapter");
+    for (kind, seed, size, story) in SCENES {
+        let images = bench::images(&gpu, &kind.recipe(seed, size), &Settings::default());
+        let comparisons = images.and_then(|i| i.compare()).unwrap_or_else(|e| panic!("{kind:?} {seed}: {e}"));
+        for comparison in comparisons {
+            let wrong = (comparison.mask.wrong.len(), comparison.count.wrong.len());
+            assert_eq!(wrong, (0, 0), "{kind:?} seed {seed}, light {}: {story}", comparison.light);
+        }
+    }
+}
