@@ -18,8 +18,10 @@ pub struct Tally {
     pub excluded: [usize; Doubt::ALL.len()],
     /// Pixels that are not right, in any image.
     pub wrong: usize,
-    /// Images that left out more than the budget allows; their pixels count only if wrong.
+    /// Images that left out more than the budget allows: too fine for their size.
     pub rejected: usize,
+    /// Pixels compared in those images; none may be wrong, but they prove less.
+    pub checked_in_rejected: usize,
     /// Largest count.
     pub max_count: i32,
 }
@@ -31,6 +33,7 @@ impl Tally {
         self.wrong += report.wrong.len();
         if report.budget().is_err() {
             self.rejected += 1;
+            self.checked_in_rejected += report.checked;
             return;
         }
         self.checked += report.checked;
@@ -50,6 +53,7 @@ impl Tally {
         self.shadowed += other.shadowed;
         self.wrong += other.wrong;
         self.rejected += other.rejected;
+        self.checked_in_rejected += other.checked_in_rejected;
         self.max_count = self.max_count.max(other.max_count);
         for (sum, excluded) in self.excluded.iter_mut().zip(other.excluded) {
             *sum += excluded;
@@ -69,11 +73,12 @@ impl fmt::Display for Tally {
         let share = |part: usize| 100.0 * part as f64 / self.checked.max(1) as f64;
         write!(
             f,
-            "{:4} images ({} too fine) {:9} px checked, {:2.0} % lit {:2.0} % shadowed, left out {:.3} % {:?}, \
+            "{:4} images {:9} px checked (and {} in {} too fine), {:2.0} % lit {:2.0} % shadowed, left out {:.3} % {:?}, \
              count to {}, wrong {}",
             self.images,
-            self.rejected,
             self.checked,
+            self.checked_in_rejected,
+            self.rejected,
             share(self.lit),
             share(self.shadowed),
             100.0 * self.excluded_share(),

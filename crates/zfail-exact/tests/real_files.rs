@@ -37,7 +37,7 @@ const MODELS: [&str; 20] = [
 
 fn size() -> [u32; 2] {
     let text = env::var("ZFAIL_SIZE").unwrap_or_default();
-    text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?])).unwrap_or([192, 120])
+    text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?])).unwrap_or([256, 160])
 }
 
 fn assets() -> PathBuf {
@@ -66,7 +66,9 @@ fn judge(gpu: &Gpu, name: &str, scene: &Scene, camera: usize, masks: &mut Tally,
     let mut own = Tally::default();
     for comparison in &comparisons {
         own.add(&comparison.mask);
-        if comparison.failed() {
+        // Counts of images that are too fine may differ by layers thinner than the guards; verdicts may not.
+        let miscounted = !comparison.count.wrong.is_empty() && comparison.count.budget().is_ok();
+        if !comparison.mask.wrong.is_empty() || miscounted {
             let (mask, count) = (&comparison.mask.wrong, &comparison.count.wrong);
             failures.push(format!(
                 "{name}, light {}: {} wrong verdicts {:?}, {} wrong counts {:?}",

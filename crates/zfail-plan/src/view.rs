@@ -64,7 +64,7 @@ impl View {
         }
     }
 
-    /// Whether points at infinity lie beyond the far plane, so that volumes need depth clamping or a finite cap.
+    /// Whether points at infinity lie beyond the far plane, so that the depth of volumes has to be clamped.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         !matches!(self.projection, Projection::Perspective { far: None, .. })
