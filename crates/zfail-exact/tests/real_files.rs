@@ -37,7 +37,7 @@ const MODELS: [&str; 20] = [
 
 fn size() -> [u32; 2] {
     let text = env::var("ZFAIL_SIZE").unwrap_or_default();
-    text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?])).unwrap_or([256, 160])
+    text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?])).unwrap_or([192, 120])
 }
 
 fn assets() -> PathBuf {

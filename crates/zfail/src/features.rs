@@ -4,10 +4,11 @@ use wgpu::{Features, TextureFormat};
 
 /// Those of the adapter's features that make shadows better; none is required.
 ///
-/// `DEPTH32FLOAT_STENCIL8` gives reversed depth its even precision.
+/// `DEPTH32FLOAT_STENCIL8` gives reversed depth its even precision, `DEPTH_CLIP_CONTROL` lets the rasteriser clamp depth
+/// for cameras with a finite far plane (E&K 2002, section 3.4, "depth clamping").
 #[must_use]
 pub fn wanted_features(adapter: Features) -> Features {
-    adapter & Features::DEPTH32FLOAT_STENCIL8
+    adapter & (Features::DEPTH32FLOAT_STENCIL8 | Features::DEPTH_CLIP_CONTROL)
 }
 
 /// The best depth-stencil format of a device with these features: 32-bit float depth, or else 24 bits or more.

@@ -15,8 +15,8 @@
 //!   order, and clears depth to 0.
 //! - The depth-stencil format has 8 stencil bits: [`depth_stencil_format`].
 //! - Illumination ends at the light's range and cone: casters and pixels beyond them are not looked at.
-//! - A camera with a far plane that is not at infinity (orthographic, or a finite perspective) works too; its volumes cost
-//!   more, because their depth is clamped in the fragment shader.
+//! - A camera with a far plane that is not at infinity (orthographic, or a finite perspective) works everywhere; it is
+//!   faster where the device has `DEPTH_CLIP_CONTROL`: [`wanted_features`].
 
 mod arena;
 mod error;

@@ -8,10 +8,10 @@
 //! told apart in one draw (E&K 2002, section 4.1, "two-sided stencil testing").
 
 use wgpu::{
-    BindGroupLayout, ColorTargetState, ColorWrites, CompareFunction, DepthStencilState, Device, FragmentState,
-    FrontFace, MultisampleState, PipelineCompilationOptions, PipelineLayoutDescriptor, PrimitiveState, RenderPipeline,
-    RenderPipelineDescriptor, ShaderModule, StencilFaceState, StencilOperation, StencilState, TextureFormat,
-    VertexState,
+    BindGroupLayout, ColorTargetState, ColorWrites, CompareFunction, DepthStencilState, Device, Features,
+    FragmentState, FrontFace, MultisampleState, PipelineCompilationOptions, PipelineLayoutDescriptor, PrimitiveState,
+    RenderPipeline, RenderPipelineDescriptor, ShaderModule, StencilFaceState, StencilOperation, StencilState,
+    TextureFormat, VertexState,
 };
 
 /// The formats of the pass into which shadows are encoded.
@@ -65,8 +65,12 @@ impl Pipelines {
     pub(crate) fn new(device: &Device, layout: &BindGroupLayout, module: &ShaderModule, target: &Target<'_>) -> Self {
         let maker = Maker { device, layout, module, target };
         Self {
-            plain: maker.set("volume", None),
-            clamped: maker.set("clamped_volume", Some("clamped_depth")),
+            plain: maker.set("volume", None, false),
+            clamped: if device.features().contains(Features::DEPTH_CLIP_CONTROL) {
+                maker.set("volume", None, true)
+            } else {
+                maker.set("clamped_volume", Some("clamped_depth"), false)
+            },
             fold: maker.fold(),
         }
     }
@@ -77,8 +81,8 @@ impl Pipelines {
         &set[usize::from(v.batched)][usize::from(v.clockwise)]
     }
 
-    /// The pipeline for light caps. They need the depth of the depth pass to the last bit, so no fragment shader may
-    /// compute it; and like the surfaces they belong to, none lies beyond the far plane.
+    /// The pipeline for light caps. They need the depth of the depth pass to the last bit, so they are clipped as it is,
+    /// and no fragment shader may compute it; like the surfaces they belong to, none lies beyond the far plane.
     pub(crate) fn light_cap(&self, v: Variant) -> &RenderPipeline {
         &self.plain[usize::from(v.batched)][usize::from(v.clockwise)]
     }
@@ -92,7 +96,7 @@ struct Maker<'a> {
 }
 
 impl Maker<'_> {
-    fn set(&self, vertex: &str, fragment: Option<&str>) -> Set {
+    fn set(&self, vertex: &str, fragment: Option<&str>, unclipped_depth: bool) -> Set {
         [false, true].map(|batched| {
             [FrontFace::Ccw, FrontFace::Cw].map(|front_face| {
                 let stencil = StencilState {
@@ -101,7 +105,7 @@ impl Maker<'_> {
                     read_mask: 0,
                     write_mask: if batched { BATCH_MASK } else { 0xff },
                 };
-                let primitive = PrimitiveState { front_face, ..PrimitiveState::default() };
+                let primitive = PrimitiveState { front_face, unclipped_depth, ..PrimitiveState::default() };
                 self.pipeline(vertex, fragment, primitive, CompareFunction::Greater, stencil)
             })
         })

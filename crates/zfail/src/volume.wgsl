@@ -49,7 +49,7 @@ fn volume(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: 
 @fragment
 fn nothing() {}
 
-// Depth clamping (Everitt & Kilgard 2002, section 3.4) by hand, for a finite far plane: the rasteriser sees a depth it will
+// Depth clamping (Everitt & Kilgard 2002, section 3.4) by hand, for devices without it: the rasteriser sees a depth it will
 // not clip, and the fragment gets the clamped true one, per sample, because every sample is tested on its own.
 struct ClampedVolume {
     @invariant @builtin(position) clip: vec4<f32>,

@@ -13,6 +13,8 @@ pub type Soup = (Vec<[f32; 3]>, Vec<[u32; 3]>);
 pub struct Setup {
     pub samples: u32,
     pub depth_stencil: wgpu::TextureFormat,
+    /// Whether the device may clamp depth by itself.
+    pub clip_control: bool,
     pub technique: Technique,
     pub counting: Counting,
     /// What depth is cleared to: 0 is nothing in sight, 1 is a surface right at the near plane.
@@ -26,6 +28,7 @@ impl Default for Setup {
         Self {
             samples: 1,
             depth_stencil: wgpu::TextureFormat::Depth32FloatStencil8,
+            clip_control: true,
             technique: Technique::EverittKilgard,
             counting: Counting::Raw,
             depth_clear: 0.0,
@@ -34,8 +37,8 @@ impl Default for Setup {
     }
 }
 
-/// A device, or `None` (with a printed reason) where there is no adapter.
-pub fn device() -> Option<(wgpu::Device, wgpu::Queue)> {
+/// A device with what the set-up asks for, or `None` (with a printed reason) where there is no adapter.
+pub fn device(setup: &Setup) -> Option<(wgpu::Device, wgpu::Queue)> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY);
     let instance = wgpu::Instance::new(descriptor);
@@ -44,8 +47,12 @@ pub fn device() -> Option<(wgpu::Device, wgpu::Queue)> {
         println!("skipped: no graphics adapter found");
         return None;
     };
+    let mut features = zfail::wanted_features(adapter.features());
+    if !setup.clip_control {
+        features.remove(wgpu::Features::DEPTH_CLIP_CONTROL);
+    }
     let descriptor = wgpu::DeviceDescriptor {
-        required_features: zfail::wanted_features(adapter.features()),
+        required_features: features,
         required_limits: adapter.limits(),
         ..wgpu::DeviceDescriptor::default()
     };
@@ -61,7 +68,7 @@ struct Out { @invariant @builtin(position) clip: vec4<f32> }
 
 /// The stencil of sample 0 of every pixel after the volumes of the one light, row by row.
 pub fn stencil(setup: &Setup, view: &View, meshes: &[(Soup, DAffine3)], light: LightKind) -> Option<Vec<u8>> {
-    let (device, queue) = device()?;
+    let (device, queue) = device(setup)?;
     let mut shadows = Shadows::new(&device);
     let target = Target { colors: &[], depth_stencil: setup.depth_stencil, samples: setup.samples };
     let pipelines = shadows.pipelines(&device, &target);
