@@ -1,7 +1,7 @@
 //! The renderer against the ray-cast oracle.
 //!
 //! In: seeds. Out: random scenes as lists of parts ([`recipe`], [`kinds`]), the comparison of their masks and counts
-//! with the truth ([`bench`]), and, where they differ, the least list of parts that still does ([`shrink`]).
+//! with the truth ([`mod@bench`]), and, where they differ, the least list of parts that still does ([`shrink`]).
 
 pub mod bench;
 pub mod kinds;
