@@ -116,6 +116,25 @@ fn a_deep_stack_of_casters_is_divided_between_casters() {
 }
 
 #[test]
+fn a_change_of_projection_keeps_deep_stacks_divided() {
+    let topology = topologies(&[sheets(1000)]).remove(0);
+    let casters = [Caster { topology: &topology, mesh: 1, world_from_object: DAffine3::IDENTITY }];
+    let lights = [ShadowLight { kind: lamp(), excluded: &[] }];
+    let mut planner = Planner::new();
+    for projection in [
+        Projection::Perspective { yfov: 1.0, near: 0.1, far: None },
+        Projection::Orthographic { ymag: 1.0, near: 0.1, far: 9.0 },
+        Projection::Perspective { yfov: 1.0, near: 0.1, far: None },
+    ] {
+        let view = View { world_from_view: DAffine3::IDENTITY, projection, size: [64, 64] };
+        let (technique, counting) = (Technique::Auto, Counting::Verdict);
+        let frame = Frame { view: &view, casters: &casters, lights: &lights, technique, counting };
+        let batches = planner.plan(&frame).unwrap().lights[0].batches.len();
+        assert!(batches >= 1000 / 120, "{projection:?}: {batches}");
+    }
+}
+
+#[test]
 fn bounds_without_extent_do_no_harm() {
     let frame = stack::Frame::new(sun().homogeneous(), &Bounds { min: DVec3::ZERO, max: DVec3::ZERO });
     let cones = vec![stack::cone([DVec3::ZERO; 3], sun().homogeneous(), &frame); 5];

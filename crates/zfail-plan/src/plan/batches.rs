@@ -6,6 +6,7 @@ use super::pair::Pair;
 use super::{Counting, Frame};
 use crate::scene::{Bounds, LightKind};
 use crate::stack::{self, Cone};
+use crate::view::Projection;
 use glam::DAffine3;
 
 /// Layers a stencil of 8 bits can tell from zero, less a few for pixels on rounded silhouettes.
@@ -19,6 +20,8 @@ pub(super) struct Batching {
     /// What the division was made for.
     key: Vec<(u64, DAffine3)>,
     light: Option<LightKind>,
+    /// Orthographic views change weights, and with them the pairs' batches.
+    orthographic: bool,
     divided: bool,
 }
 
@@ -39,11 +42,13 @@ impl Batching {
             return;
         }
         let kind = frame.lights[l].kind;
+        let orthographic = matches!(frame.view.projection, Projection::Orthographic { .. });
         let placed = |pair: &Pair| {
             let caster = &frame.casters[pair.caster];
             (caster.mesh, caster.world_from_object)
         };
-        if self.light == Some(kind) && self.key.iter().copied().eq(pairs.iter().map(placed)) {
+        let same_view = self.orthographic == orthographic;
+        if same_view && self.light == Some(kind) && self.key.iter().copied().eq(pairs.iter().map(placed)) {
             if !self.divided {
                 pairs.iter_mut().for_each(Pair::unite);
             }
@@ -52,6 +57,7 @@ impl Batching {
         self.key.clear();
         self.key.extend(pairs.iter().map(placed));
         self.light = Some(kind);
+        self.orthographic = orthographic;
 
         let (items, cones, shape) = cones(frame, &kind, pairs);
         self.divided = !stack::is_within(&cones, &shape, SINGLE);
