@@ -57,17 +57,17 @@ pub enum TopologyError {
 
 /// An undirected edge with the one or two triangles that meet there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Edge {
+struct Edge {
     /// Welded vertex ids, lower first.
-    pub vertices: [u32; 2],
+    vertices: [u32; 2],
     triangles: [u32; 2],
 }
 
 /// An undirected edge where more than two triangles meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Fan {
+struct Fan {
     /// Welded vertex ids, lower first.
-    pub vertices: [u32; 2],
+    vertices: [u32; 2],
     start: u32,
     end: u32,
 }
