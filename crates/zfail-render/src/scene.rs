@@ -5,7 +5,7 @@ use crate::geometry::MeshBuffers;
 use crate::layouts::Layouts;
 use crate::{Gpu, RenderError, Settings, check, materials};
 use zfail::{Caster, Counting, Frame, LightStats, ShadowLight, Shadows};
-use zfail_plan::scene::{Bounds, Instance, Light, Scene};
+use zfail_plan::scene::{Bounds, Instance, Light, Mesh, Pose, Scene};
 use zfail_plan::view::View;
 
 /// Uploaded meshes and materials, registered casters, and the plain data that frames are made from.
@@ -19,6 +19,8 @@ pub struct SceneOnGpu {
     pub instances: Vec<Instance>,
     pub lights: Vec<Light>,
     pub bounds: Bounds,
+    /// Of every mesh, object space.
+    mesh_bounds: Vec<Bounds>,
     pub ambient: [f32; 3],
     pub background: [f32; 3],
     /// Radiance of the strongest emission.
@@ -70,6 +72,7 @@ impl SceneOnGpu {
             instances: scene.instances.clone(),
             lights: scene.lights.clone(),
             bounds: scene.bounds(),
+            mesh_bounds: scene.meshes.iter().map(Mesh::bounds).collect(),
             ambient: scene.ambient,
             background: scene.background,
             emission,
@@ -79,6 +82,32 @@ impl SceneOnGpu {
         };
         gpu.check()?;
         Ok(on_gpu)
+    }
+
+    /// Moves instances and lights in place.
+    pub fn pose(&mut self, pose: &Pose) -> Result<(), RenderError> {
+        check::pose(pose, self.instances.len(), self.lights.len())?;
+        for (instance, &world_from_object) in self.instances.iter_mut().zip(&pose.instances) {
+            instance.world_from_object = world_from_object;
+        }
+        for (&caster, &world_from_object) in self.caster_of.iter().zip(&pose.instances) {
+            if let Some(caster) = caster {
+                self.casters[caster].world_from_object = world_from_object;
+            }
+        }
+        for (light, &kind) in self.lights.iter_mut().zip(&pose.lights) {
+            light.kind = kind;
+        }
+        self.bounds = Bounds::EMPTY;
+        for instance in &self.instances {
+            let world = self.mesh_bounds[instance.mesh].transformed(&instance.world_from_object);
+            if !world.is_empty() {
+                self.bounds.add(world.min);
+                self.bounds.add(world.max);
+            }
+        }
+        self.draws.pose(&self.instances);
+        Ok(())
     }
 
     /// The lights that `settings` choose, as indices into [`Self::lights`].
