@@ -22,8 +22,7 @@ pub struct Knife {
 }
 
 /// Corners of a box's faces in cycles, numbered by bits x, y, z.
-const FACES: [[usize; 4]; 6] =
-    [[0, 2, 6, 4], [1, 5, 7, 3], [0, 4, 5, 1], [2, 3, 7, 6], [0, 1, 3, 2], [4, 6, 7, 5]];
+const FACES: [[usize; 4]; 6] = [[0, 2, 6, 4], [1, 5, 7, 3], [0, 4, 5, 1], [2, 3, 7, 6], [0, 1, 3, 2], [4, 6, 7, 5]];
 
 impl Polyhedron {
     /// Becomes a parallelepiped with the corners of [`crate::scene::Bounds::corners`].

@@ -291,7 +291,7 @@ fn light_figures(
     LightFigures {
         kind,
         casters: figures.casters,
-        culled: figures.culled,
+        culled: figures.reasons().map(|(reason, count)| (reason.name(), count)).collect(),
         cases: figures.cases,
         triangles: crate::TriangleFigures {
             sides: figures.triangles.sides,

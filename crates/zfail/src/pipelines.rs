@@ -113,12 +113,8 @@ impl Maker<'_> {
         let (front, back) = if z_pass { (in_front(up), in_front(down)) } else { (behind(down), behind(up)) };
         [false, true].map(|batched| {
             [FrontFace::Ccw, FrontFace::Cw].map(|front_face| {
-                let stencil = StencilState {
-                    front,
-                    back,
-                    read_mask: 0,
-                    write_mask: if batched { BATCH_MASK } else { 0xff },
-                };
+                let stencil =
+                    StencilState { front, back, read_mask: 0, write_mask: if batched { BATCH_MASK } else { 0xff } };
                 let primitive = PrimitiveState { front_face, unclipped_depth, ..PrimitiveState::default() };
                 self.pipeline(vertex, fragment, primitive, CompareFunction::Greater, stencil)
             })

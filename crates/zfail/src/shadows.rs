@@ -191,6 +191,13 @@ impl Shadows {
         self.planner.last()
     }
 
+    /// Changes what the prepared frame draws: for figures of what goes wrong without a step, and for tests that see
+    /// whether anyone would notice. Ranges of indices, scissors, z-pass and clear values may be changed, and draws
+    /// emptied; indices, lights and transforms are on the device already.
+    pub fn edit_plan(&mut self, edit: impl FnOnce(&mut FramePlan)) {
+        edit(self.planner.last_mut());
+    }
+
     /// Figures of one light of the prepared frame.
     #[must_use]
     pub fn stats(&self, light: usize) -> LightStats {
@@ -266,7 +273,9 @@ impl Shadows {
                 continue;
             }
             pending = Some(match pending {
-                Some((same, before)) if same == pipeline && before.end == range.start => (same, before.start..range.end),
+                Some((same, before)) if same == pipeline && before.end == range.start => {
+                    (same, before.start..range.end)
+                }
                 Some((other, before)) => {
                     state.set_pipeline(pass, other);
                     pass.draw_indexed(before, base, d..d + 1);

@@ -23,9 +23,8 @@ pub(super) fn near_count(
     stride: usize,
     pyramid: &Pyramid,
 ) -> Option<u32> {
-    let clear = |side: &[u32]| {
-        pyramid.excludes_segment(topology.position(side[0] >> 1), topology.position(side[1] >> 1))
-    };
+    let clear =
+        |side: &[u32]| pyramid.excludes_segment(topology.position(side[0] >> 1), topology.position(side[1] >> 1));
     let all_clear = if sides.len() <= TASK * stride {
         sides.chunks_exact(stride).all(clear)
     } else {

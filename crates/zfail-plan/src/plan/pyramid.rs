@@ -34,9 +34,8 @@ pub(super) fn near_slab(view: &View, within: Rectangle, pad: f64) -> [DVec3; 8] 
         let grown = 0.02 * (hi - lo) + pad;
         [lo - grown, hi + grown]
     });
-    let corner = |x: usize, y: usize, depth: f64| {
-        view.world_from_view.matrix3 * DVec3::new(span[0][x], span[1][y], -depth)
-    };
+    let corner =
+        |x: usize, y: usize, depth: f64| view.world_from_view.matrix3 * DVec3::new(span[0][x], span[1][y], -depth);
     let layer = |depth| [corner(0, 0, depth), corner(1, 0, depth), corner(1, 1, depth), corner(0, 1, depth)];
     let ([a, b, c, d], [e, f, g, h]) = (layer(near - pad), layer(near + pad));
     [a, b, c, d, e, f, g, h]
@@ -137,9 +136,9 @@ impl Pyramid {
         let normals = [up.cross(deep), deep.cross(right), right.cross(up), (b - a).cross(c - a)];
         normals.into_iter().all(|n| {
             let extent = |points: &[DVec3]| {
-                points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), p| {
-                    (lo.min(n.dot(*p)), hi.max(n.dot(*p)))
-                })
+                points
+                    .iter()
+                    .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), p| (lo.min(n.dot(*p)), hi.max(n.dot(*p))))
             };
             let ((lo, hi), (from, to)) = (extent(s), extent(&[a, b, c]));
             lo <= to && from <= hi

@@ -160,7 +160,8 @@ mod tests {
         };
         let (mut shadowed, mut small) = (0, 0);
         for round in 0..400 {
-            let room = Bounds { min: DVec3::new(-6.0, -2.0, -12.0), max: DVec3::new(6.0, -1.0 + 3.0 * random().abs(), 2.0) };
+            let room =
+                Bounds { min: DVec3::new(-6.0, -2.0, -12.0), max: DVec3::new(6.0, -1.0 + 3.0 * random().abs(), 2.0) };
             let center = DVec3::new(4.0 * random(), 1.5 * random(), -6.0 + 5.0 * random());
             let half = DVec3::new(random(), random(), random()).abs() * 0.5 + 0.05;
             let corners = Bounds { min: center - half, max: center + half }.corners();

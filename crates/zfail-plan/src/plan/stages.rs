@@ -11,9 +11,7 @@ use super::pyramid::{self, Pyramid};
 use super::reach::Reach;
 use super::receivers::Receivers;
 use super::store::Store;
-use super::{
-    Counting, Culled, Draw, Frame, FramePlan, LightPlan, LightStats, Measures, PlanError, ZPass, caps,
-};
+use super::{Counting, Culled, Draw, Frame, FramePlan, LightPlan, LightStats, Measures, PlanError, ZPass, caps};
 use crate::scissor::{self, Rectangle};
 use glam::{DVec4, Vec4};
 use rayon::prelude::*;
@@ -44,6 +42,11 @@ impl Planner {
     #[must_use]
     pub fn last(&self) -> &FramePlan {
         &self.plan
+    }
+
+    /// The last frame planned, to be changed before it is drawn. The next frame is planned as if it had not been.
+    pub fn last_mut(&mut self) -> &mut FramePlan {
+        &mut self.plan
     }
 
     /// Plans `frame`.
@@ -95,10 +98,14 @@ impl Planner {
         for l in 0..lights {
             self.choose(frame, measures, l, placed)?;
         }
-        self.in_parallel(frame, |pair, _| pair.is_stale(frame.view), |pair, c| {
-            pair.weigh(frame.casters[c].topology, frame.view);
-            pair.build_sides(frame.casters[c].topology);
-        });
+        self.in_parallel(
+            frame,
+            |pair, _| pair.is_stale(frame.view),
+            |pair, c| {
+                pair.weigh(frame.casters[c].topology, frame.view);
+                pair.build_sides(frame.casters[c].topology);
+            },
+        );
         for (l, pairs) in self.pairs.chunks_mut(casters).enumerate() {
             self.batching[l].divide(frame, l, pairs, placed);
         }
@@ -106,9 +113,13 @@ impl Planner {
         for (l, pairs) in self.pairs.chunks_mut(casters).enumerate() {
             count_from_near_rectangle(frame, measures, &mut self.plan.lights[l], pairs, placed);
         }
-        self.in_parallel(frame, |pair, c| pair.lacks_caps(frame.casters[c].topology), |pair, c| {
-            pair.build_caps(frame.casters[c].topology, frame.view, &placed[c], measures.fan);
-        });
+        self.in_parallel(
+            frame,
+            |pair, c| pair.lacks_caps(frame.casters[c].topology),
+            |pair, c| {
+                pair.build_caps(frame.casters[c].topology, frame.view, &placed[c], measures.fan);
+            },
+        );
         for l in 0..lights {
             self.append(frame, l, placed)?;
         }
@@ -137,13 +148,7 @@ impl Planner {
     }
 
     /// Decides which casters of light `l` draw what and where, as far as boxes tell.
-    fn choose(
-        &mut self,
-        frame: &Frame<'_>,
-        measures: Measures,
-        l: usize,
-        placed: &[Placed],
-    ) -> Result<(), PlanError> {
+    fn choose(&mut self, frame: &Frame<'_>, measures: Measures, l: usize, placed: &[Placed]) -> Result<(), PlanError> {
         let (view, light) = (frame.view, &frame.lights[l]);
         if measures.reach {
             self.reach.set(&light.kind, view.eye());
@@ -215,14 +220,7 @@ impl Planner {
     }
 
     /// Idles casters in the shadow of convex ones.
-    fn leave_out_occluded(
-        &mut self,
-        frame: &Frame<'_>,
-        measures: Measures,
-        l: usize,
-        placed: &[Placed],
-        light: DVec4,
-    ) {
+    fn leave_out_occluded(&mut self, frame: &Frame<'_>, measures: Measures, l: usize, placed: &[Placed], light: DVec4) {
         let pairs = &mut self.pairs[l * placed.len()..(l + 1) * placed.len()];
         let most = usize::from(measures.occluders);
         if most == 0 || pairs.iter().filter(|pair| pair.role != Role::Idle).count() < 2 {

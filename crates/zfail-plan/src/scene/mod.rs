@@ -12,6 +12,7 @@ pub use light::{Light, LightKind};
 pub use material::{AlphaMode, Filter, Image, Material, Texture, TextureRef, Wrap};
 pub use mesh::{Mesh, Primitive};
 
+use crate::topology::Surface;
 use crate::view::Projection;
 use glam::{DAffine3, DVec3};
 
@@ -96,7 +97,21 @@ impl Scene {
     /// Whether triangle `triangle` of mesh `mesh` blocks light at all: blended materials let it through.
     #[must_use]
     pub fn triangle_casts(&self, mesh: usize, triangle: usize) -> bool {
-        self.meshes[mesh].material_of(triangle).is_none_or(|m| self.materials[m].alpha != AlphaMode::Blend)
+        self.triangle_surface(mesh, triangle) != Surface::Through
+    }
+
+    /// What triangle `triangle` of mesh `mesh` is to light and to the depth buffer.
+    #[must_use]
+    pub fn triangle_surface(&self, mesh: usize, triangle: usize) -> Surface {
+        let Some(material) = self.meshes[mesh].material_of(triangle).map(|m| &self.materials[m]) else {
+            return Surface::Front;
+        };
+        match material.alpha {
+            AlphaMode::Blend => Surface::Through,
+            AlphaMode::Mask(_) => Surface::Partly,
+            AlphaMode::Opaque if material.double_sided => Surface::BothSides,
+            AlphaMode::Opaque => Surface::Front,
+        }
     }
 }
 

@@ -31,8 +31,7 @@ pub(super) fn largest(topology: &Topology) -> Option<ConvexPart> {
 }
 
 fn convex(topology: &Topology, part: usize) -> Option<ConvexPart> {
-    let faces: Vec<[u32; 3]> =
-        topology.triangles_of(part).iter().map(|&t| topology.triangles[t as usize]).collect();
+    let faces: Vec<[u32; 3]> = topology.triangles_of(part).iter().map(|&t| topology.triangles[t as usize]).collect();
     let at = |v: u32| {
         let [x, y, z] = topology.positions[v as usize].map(f64::from);
         Coord3D { x, y, z }
@@ -61,8 +60,7 @@ mod tests {
         let mut positions: Vec<[f32; 3]> =
             (0..8).map(|i| [i & 1, i >> 1 & 1, i >> 2 & 1].map(|bit| bit as f32)).collect();
         positions[7] = [1.0 - dent; 3];
-        let quads =
-            [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         // Diagonals through corner 7, so that a dent makes an edge re-entrant.
         let triangles: Vec<[u32; 3]> = quads
             .iter()
