@@ -48,6 +48,8 @@ pub struct Render {
     /// Camera by index or name, in depth-first order of the scene's nodes.
     #[arg(long, value_name = "N|NAME", default_value = "0")]
     pub camera: String,
+    #[command(flatten)]
+    pub moment: Moment,
     /// Let only this light shine; repeat it for several. The ambient light stays, and files keep the numbers that the
     /// lights have in the scene.
     #[arg(long = "light", value_name = "N", value_parser = parse_light)]
@@ -112,6 +114,17 @@ pub struct SceneArg {
     /// A .glb or .gltf file, or builtin:NAME.
     #[arg(value_name = "SCENE")]
     pub scene: String,
+}
+
+/// The moment of an animation.
+#[derive(Args, Debug)]
+pub struct Moment {
+    /// Show the scene this many seconds after the start of its animation.
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
+    pub time: Option<f64>,
+    /// Animation by index or name; the first one if only --time is given.
+    #[arg(long, value_name = "NAME|N")]
+    pub animation: Option<String>,
 }
 
 /// Which GPU does the work.
@@ -280,6 +293,13 @@ fn parse_exposure(text: &str) -> Result<Exposure, String> {
     }
 }
 
+fn parse_seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds >= 0.0 && seconds.is_finite() => Ok(seconds),
+        _ => Err("it must be a number of seconds, 0 or more".to_owned()),
+    }
+}
+
 fn parse_light(text: &str) -> Result<usize, String> {
     text.parse().map_err(|_| "it must be the number of a light, counted from 0".to_owned())
 }
@@ -328,6 +348,15 @@ mod tests {
             assert!(parse(wrong).is_err(), "{wrong}");
         }
         assert!(parse("dept=d.exr").unwrap_err().contains("did you mean 'depth'"));
+    }
+
+    #[test]
+    fn times() {
+        assert_eq!(parse_seconds("0"), Ok(0.0));
+        assert_eq!(parse_seconds("1.25"), Ok(1.25));
+        for wrong in ["", "-1", "nan", "inf", "1s"] {
+            assert!(parse_seconds(wrong).is_err(), "{wrong}");
+        }
     }
 
     #[test]

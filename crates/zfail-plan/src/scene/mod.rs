@@ -6,11 +6,13 @@ mod bounds;
 mod light;
 mod material;
 mod mesh;
+mod pose;
 
 pub use bounds::Bounds;
 pub use light::{Light, LightKind};
 pub use material::{AlphaMode, Filter, Image, Material, Texture, TextureRef, Wrap};
 pub use mesh::{Mesh, Primitive};
+pub use pose::Pose;
 
 use crate::view::Projection;
 use glam::{DAffine3, DVec3};
