@@ -120,7 +120,7 @@ pub struct SceneArg {
 #[derive(Args, Debug)]
 pub struct Moment {
     /// Show the scene this many seconds after the start of its animation.
-    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, allow_negative_numbers = true)]
     pub time: Option<f64>,
     /// Animation by index or name; the first one if only --time is given.
     #[arg(long, value_name = "NAME|N")]
