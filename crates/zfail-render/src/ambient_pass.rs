@@ -40,7 +40,9 @@ impl AmbientPass {
         };
         let mut pipelines = HashMap::new();
         for draw in &list.solid {
-            pipelines.entry(draw.state).or_insert_with(|| recipe(draw.state));
+            for state in draw.state.poses() {
+                pipelines.entry(state).or_insert_with(|| recipe(state));
+            }
         }
         Self { pipelines }
     }

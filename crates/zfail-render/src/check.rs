@@ -1,7 +1,7 @@
 //! The rules of the scene types, so that no index goes astray later.
 
 use crate::RenderError;
-use zfail_plan::scene::Scene;
+use zfail_plan::scene::{Pose, Scene};
 
 /// Checks every index and size in `scene`.
 pub fn scene(scene: &Scene) -> Result<(), RenderError> {
@@ -57,6 +57,24 @@ pub fn scene(scene: &Scene) -> Result<(), RenderError> {
         if let Some(e) = light.excluded.iter().find(|&&e| e >= scene.instances.len()) {
             return fail(format!("light {i} excludes instance {e}, which does not exist"));
         }
+    }
+    Ok(())
+}
+
+/// Checks that `pose` fits a scene of so many instances and lights.
+pub fn pose(pose: &Pose, instances: usize, lights: usize) -> Result<(), RenderError> {
+    let fail = |message: String| Err(RenderError::Scene(message));
+    for (what, posed, count) in [("instances", pose.instances.len(), instances), ("lights", pose.lights.len(), lights)]
+    {
+        if posed != count {
+            return fail(format!("a pose places {posed} {what}, and there are {count}"));
+        }
+    }
+    if let Some(i) = pose.instances.iter().position(|m| !m.is_finite()) {
+        return fail(format!("a pose gives instance {i} a transform that is not finite"));
+    }
+    if let Some(l) = pose.lights.iter().position(|kind| !kind.homogeneous().is_finite()) {
+        return fail(format!("a pose gives light {l} a place that is not finite"));
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 use zfail_plan::glam::{DAffine3, DVec3};
-use zfail_plan::scene::{AlphaMode, Bounds, Scene};
+use zfail_plan::scene::{AlphaMode, Bounds, Instance, Scene};
 
 /// One primitive of one instance.
 #[derive(Clone, Debug)]
@@ -32,6 +32,13 @@ pub struct DrawState {
     pub mirrored: bool,
     /// No light applies.
     pub unlit: bool,
+}
+
+impl DrawState {
+    /// This state in every pose that its instance may take.
+    pub fn poses(self) -> [Self; 2] {
+        [false, true].map(|mirrored| Self { mirrored, ..self })
+    }
 }
 
 /// [`AlphaMode`] without its number.
@@ -73,7 +80,7 @@ impl DrawList {
                     state: DrawState {
                         alpha,
                         double_sided: material.is_some_and(|m| m.double_sided),
-                        mirrored: instance.world_from_object.matrix3.determinant() < 0.0,
+                        mirrored: mirrors(&instance.world_from_object),
                         unlit: material.is_some_and(|m| m.unlit),
                     },
                     center: Bounds::of(triangles.iter().flatten().map(|&v| mesh.position(v))).center(),
@@ -81,9 +88,25 @@ impl DrawList {
                 if alpha == Alpha::Blend { &mut list.blended } else { &mut list.solid }.push(draw);
             }
         }
-        list.solid.sort_by_key(|d| (d.state, d.material, d.mesh));
+        list.sort();
         list
     }
+
+    fn sort(&mut self) {
+        self.solid.sort_by_key(|d| (d.state, d.material, d.mesh));
+    }
+
+    /// Follows instances that were moved, since their new transforms may mirror.
+    pub fn pose(&mut self, instances: &[Instance]) {
+        for draw in self.solid.iter_mut().chain(&mut self.blended) {
+            draw.state.mirrored = mirrors(&instances[draw.instance].world_from_object);
+        }
+        self.sort();
+    }
+}
+
+fn mirrors(world_from_object: &DAffine3) -> bool {
+    world_from_object.matrix3.determinant() < 0.0
 }
 
 /// `draws` from the farthest to the nearest, equals in scene order.

@@ -50,7 +50,9 @@ impl FinalPass {
         for draw in &list.blended {
             let faces: &[wgpu::Face] =
                 if draw.state.double_sided { &[wgpu::Face::Front, wgpu::Face::Back] } else { &[wgpu::Face::Back] };
-            pipelines.entry(draw.state).or_insert_with(|| faces.iter().map(|&cull| create(draw.state, cull)).collect());
+            for state in draw.state.poses() {
+                pipelines.entry(state).or_insert_with(|| faces.iter().map(|&cull| create(state, cull)).collect());
+            }
         }
         Self { pipelines }
     }

@@ -9,28 +9,64 @@ use zfail_plan::glam::{DAffine3, DMat3, DMat4};
 use zfail_plan::scene::Instance;
 use zfail_plan::view::{Projection, View};
 
-/// Uniforms of a frame, on the device.
+/// Uniforms of a frame, on the device. The buffers stay from frame to frame.
 #[derive(Debug)]
 pub struct FrameData {
     /// Group 0 of every pass that knows the view.
     pub bind_group: wgpu::BindGroup,
     instances: wgpu::BindGroup,
+    uniform: wgpu::Buffer,
+    lights: wgpu::Buffer,
+    placements: wgpu::Buffer,
     /// Bytes from one instance's uniform to the next.
     instance_stride: u32,
     view_from_object: Vec<DAffine3>,
+    /// What `placements` holds, kept for its memory.
+    bytes: Vec<u8>,
 }
 
 impl FrameData {
-    /// Uploads a frame; `ambient` and the lights are pre-exposed.
-    pub fn new(
+    /// Buffers for frames with `lights` lights and `instances` instances.
+    pub fn new(gpu: &Gpu, layouts: &Layouts, instances: usize, lights: usize) -> Result<Self, RenderError> {
+        let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment;
+        let stride = (size_of::<InstanceUniform>() as u32).next_multiple_of(alignment);
+        let uniform = buffer(gpu, "frame", wgpu::BufferUsages::UNIFORM, size_of::<FrameUniform>())?;
+        let lights = buffer(gpu, "lights", wgpu::BufferUsages::STORAGE, lights.max(1) * size_of::<LightRecord>())?;
+        let size = instances.max(1) * stride as usize;
+        let placements = buffer(gpu, "instances", wgpu::BufferUsages::UNIFORM, size)?;
+        let window = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer: &placements,
+            offset: 0,
+            size: std::num::NonZeroU64::new(size_of::<InstanceUniform>() as u64),
+        });
+        let resources = [uniform.as_entire_binding(), lights.as_entire_binding()];
+        Ok(Self {
+            bind_group: bind(&gpu.device, "frame", &layouts.frame, &resources),
+            instances: bind(&gpu.device, "instance", &layouts.instance, &[window]),
+            uniform,
+            lights,
+            placements,
+            instance_stride: stride,
+            view_from_object: Vec::new(),
+            bytes: vec![0; size],
+        })
+    }
+
+    /// Whether `lights` lights fit.
+    pub fn holds(&self, lights: usize) -> bool {
+        (lights * size_of::<LightRecord>()) as u64 <= self.lights.size()
+    }
+
+    /// Uploads a frame; `ambient` and the lights are pre-exposed, and there are no more of either than room for them.
+    pub fn update(
+        &mut self,
         gpu: &Gpu,
-        layouts: &Layouts,
         view: &View,
         instances: &[Instance],
         lights: &[LightRecord],
         ambient: [f32; 3],
         pre_exposure: f32,
-    ) -> Result<Self, RenderError> {
+    ) {
         let uniform = FrameUniform {
             view_per_ndc: view_per_ndc(view),
             size: view.size.map(|s| s as f32),
@@ -40,31 +76,15 @@ impl FrameData {
             light_count: lights.len() as u32,
             pad: [0; 2],
         };
-        let uniform = upload(gpu, "frame", wgpu::BufferUsages::UNIFORM, bytemuck::bytes_of(&uniform))?;
-        let no_light = [LightRecord::default()];
-        let records = if lights.is_empty() { &no_light[..] } else { lights };
-        let records = upload(gpu, "lights", wgpu::BufferUsages::STORAGE, bytemuck::cast_slice(records))?;
-
-        let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment;
-        let stride = (size_of::<InstanceUniform>() as u32).next_multiple_of(alignment);
-        let mut bytes = vec![0; stride as usize * instances.len().max(1)];
-        for (slot, instance) in bytes.chunks_exact_mut(stride as usize).zip(instances) {
+        gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
+        gpu.queue.write_buffer(&self.lights, 0, bytemuck::cast_slice(lights));
+        for (slot, instance) in self.bytes.chunks_exact_mut(self.instance_stride as usize).zip(instances) {
             let uniform = instance_uniform(view, &instance.world_from_object);
             slot[..size_of::<InstanceUniform>()].copy_from_slice(bytemuck::bytes_of(&uniform));
         }
-        let placement = upload(gpu, "instances", wgpu::BufferUsages::UNIFORM, &bytes)?;
-        let window = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-            buffer: &placement,
-            offset: 0,
-            size: std::num::NonZeroU64::new(size_of::<InstanceUniform>() as u64),
-        });
-        let resources = [uniform.as_entire_binding(), records.as_entire_binding()];
-        Ok(Self {
-            bind_group: bind(&gpu.device, "frame", &layouts.frame, &resources),
-            instances: bind(&gpu.device, "instance", &layouts.instance, &[window]),
-            instance_stride: stride,
-            view_from_object: instances.iter().map(|i| view.view_from_object(&i.world_from_object)).collect(),
-        })
+        gpu.queue.write_buffer(&self.placements, 0, &self.bytes);
+        self.view_from_object.clear();
+        self.view_from_object.extend(instances.iter().map(|i| view.view_from_object(&i.world_from_object)));
     }
 
     /// The scene's blended draws from back to front.
@@ -122,18 +142,16 @@ fn normal_matrix(m: &DMat3) -> DMat3 {
     if greatest > 0.0 { cofactors * scale.recip() } else { DMat3::ZERO }
 }
 
-fn upload(gpu: &Gpu, label: &str, usage: wgpu::BufferUsages, bytes: &[u8]) -> Result<wgpu::Buffer, RenderError> {
-    if bytes.len() as u64 > gpu.device.limits().max_buffer_size {
+fn buffer(gpu: &Gpu, label: &str, usage: wgpu::BufferUsages, size: usize) -> Result<wgpu::Buffer, RenderError> {
+    if size as u64 > gpu.device.limits().max_buffer_size {
         return Err(RenderError::Scene(format!("too many {label} for this device")));
     }
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+    Ok(gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
-        size: bytes.len() as u64,
+        size: size as u64,
         usage: usage | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
-    });
-    gpu.queue.write_buffer(&buffer, 0, bytes);
-    Ok(buffer)
+    }))
 }
 
 #[cfg(test)]

@@ -101,6 +101,12 @@ impl Gpu {
         })
     }
 
+    /// Waits until the device has done everything that was submitted.
+    pub(crate) fn wait(&self) -> Result<(), RenderError> {
+        self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| RenderError::Device(e.to_string()))?;
+        self.check()
+    }
+
     /// Reports the first error that the device has had since the last call.
     pub(crate) fn check(&self) -> Result<(), RenderError> {
         match self.failure.lock().unwrap_or_else(PoisonError::into_inner).take() {

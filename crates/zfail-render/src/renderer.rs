@@ -20,7 +20,7 @@ use half::f16;
 use std::collections::HashMap;
 use std::time::Instant;
 use zfail::{Counting, LightStats};
-use zfail_plan::scene::Scene;
+use zfail_plan::scene::{Pose, Scene};
 use zfail_plan::view::View;
 
 /// A scene on the device, ready to be rendered from any view.
@@ -33,6 +33,7 @@ pub struct Renderer<'g> {
     passes: HashMap<u32, Passes>,
     mask: Option<MaskPass>,
     targets: Option<Targets>,
+    frame: FrameData,
 }
 
 /// Everything that depends on the sample count alone.
@@ -54,14 +55,34 @@ impl<'g> Renderer<'g> {
     pub fn new(gpu: &'g Gpu, scene: &Scene) -> Result<Self, RenderError> {
         let layouts = Layouts::new(&gpu.device);
         let scene = SceneOnGpu::new(gpu, &layouts, scene)?;
-        Ok(Self { gpu, layouts, scene, passes: HashMap::new(), mask: None, targets: None })
+        let frame = FrameData::new(gpu, &layouts, scene.instances.len(), scene.lights.len())?;
+        Ok(Self { gpu, layouts, scene, passes: HashMap::new(), mask: None, targets: None, frame })
     }
 
-    /// Renders one picture.
+    /// Moves the scene's instances and lights; meshes, materials and everything derived from them stay on the device.
+    /// Cameras are the caller's business: every frame is given its own [`View`].
+    ///
+    /// # Errors
+    /// If the pose has another number of instances or lights than the scene, or is not finite. The old pose stays then.
+    pub fn set_pose(&mut self, pose: &Pose) -> Result<(), RenderError> {
+        self.scene.pose(pose)
+    }
+
+    /// Renders one picture: a frame as of [`Renderer::render`], read back.
+    ///
+    /// # Errors
+    /// As for [`Renderer::render`].
+    pub fn picture(&mut self, view: &View, settings: &Settings) -> Result<(Picture, FrameStats), RenderError> {
+        let stats = self.render(view, settings)?;
+        let targets = self.targets.as_ref().ok_or_else(no_targets)?;
+        Ok((develop(self.gpu, targets)?, stats))
+    }
+
+    /// Renders one frame and waits for the device, but leaves the picture there.
     ///
     /// # Errors
     /// If the settings do not fit the scene or the device, or the device fails.
-    pub fn picture(&mut self, view: &View, settings: &Settings) -> Result<(Picture, FrameStats), RenderError> {
+    pub fn render(&mut self, view: &View, settings: &Settings) -> Result<FrameStats, RenderError> {
         let samples = settings.samples;
         if !matches!(samples, 1 | 4) {
             return Err(RenderError::Samples(samples));
@@ -81,29 +102,30 @@ impl<'g> Renderer<'g> {
         };
         let planning_ms = start.elapsed().as_secs_f64() * 1e3;
 
-        let (frame, pre_exposure) = frame_data(self.gpu, &self.layouts, &self.scene, view, &chosen)?;
+        let pre_exposure = update_frame(&mut self.frame, self.gpu, &self.layouts, &self.scene, view, &chosen)?;
+        let frame = &self.frame;
         let passes =
             self.passes.entry(samples).or_insert_with(|| Passes::new(self.gpu, &self.layouts, &self.scene, samples));
         let order = PassOrder { lights: chosen.len(), shadows: settings.shadows };
         let timer = Timer::new(self.gpu, order.count());
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let background = self.scene.background.map(|c| half_float(c * pre_exposure));
-        passes.ambient.encode(&mut encoder, targets, &frame, &self.scene, background, timer.pass(0));
+        passes.ambient.encode(&mut encoder, targets, frame, &self.scene, background, timer.pass(0));
         for (i, figures) in figures.iter().enumerate() {
             if let Some(pass) = order.shadow(i) {
                 passes.shadow.encode(&mut encoder, targets, &self.scene.shadows, i, timer.pass(pass));
             }
             let time = timer.pass(order.illuminate(i));
-            passes.illuminate.encode(&mut encoder, targets, &frame, i as u32, figures.scissor, time);
+            passes.illuminate.encode(&mut encoder, targets, frame, i as u32, figures.scissor, time);
         }
-        passes.last.encode(&mut encoder, targets, &frame, &self.scene, timer.pass(order.last()));
+        passes.last.encode(&mut encoder, targets, frame, &self.scene, timer.pass(order.last()));
         passes.meter.encode(self.gpu, &mut encoder, targets, settings.exposure, pre_exposure);
         let exposure = &passes.meter.exposure;
         passes.develop.encode(self.gpu, &mut encoder, targets, exposure, timer.pass(order.develop()));
         timer.resolve(&mut encoder);
         self.gpu.queue.submit([encoder.finish()]);
 
-        let picture = develop(self.gpu, targets)?;
+        self.gpu.wait()?;
         let times = timer.read(self.gpu)?;
         let lights = chosen
             .iter()
@@ -113,15 +135,14 @@ impl<'g> Renderer<'g> {
                 light_figures(lights::kind_name(&self.scene.lights[l].kind), figures, &times, &order, i)
             })
             .collect();
-        let stats = FrameStats {
+        Ok(FrameStats {
             adapter: self.gpu.info.name.clone(),
             backend: self.gpu.info.backend.to_string(),
             depth_format: format!("{:?}", self.gpu.depth_stencil),
             planning_ms,
             gpu_ms: times.total_ms(),
             lights,
-        };
-        Ok((picture, stats))
+        })
     }
 
     /// Renders the outputs of `kinds`, always at one sample per pixel.
@@ -131,13 +152,14 @@ impl<'g> Renderer<'g> {
     pub fn aovs(&mut self, view: &View, settings: &Settings, kinds: &[AovKind]) -> Result<Aovs, RenderError> {
         let chosen = self.scene.chosen(settings)?;
         let targets = reuse(&mut self.targets, self.gpu, &self.layouts, view.size, 1)?;
-        let (frame, _) = frame_data(self.gpu, &self.layouts, &self.scene, view, &chosen)?;
+        update_frame(&mut self.frame, self.gpu, &self.layouts, &self.scene, view, &chosen)?;
+        let frame = &self.frame;
         let passes = self.passes.entry(1).or_insert_with(|| Passes::new(self.gpu, &self.layouts, &self.scene, 1));
         let mask = self.mask.get_or_insert_with(|| MaskPass::new(self.gpu, &self.layouts));
         let encoder = || self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
 
         let mut first = encoder();
-        passes.ambient.encode(&mut first, targets, &frame, &self.scene, [0.0; 3], None);
+        passes.ambient.encode(&mut first, targets, frame, &self.scene, [0.0; 3], None);
         self.gpu.queue.submit([first.finish()]);
         let mut out = Aovs { size: view.size, ..Aovs::default() };
         surface_outputs::fill(&mut out, self.gpu, targets, view, kinds)?;
@@ -157,7 +179,7 @@ impl<'g> Renderer<'g> {
                 if settings.shadows {
                     passes.shadow.encode(&mut encoder, targets, &self.scene.shadows, light, None);
                 }
-                images.push(mask.read(self.gpu, encoder, targets, &frame, light as u32, what)?);
+                images.push(mask.read(self.gpu, encoder, targets, frame, light as u32, what)?);
             }
         }
         Ok(out)
@@ -220,24 +242,33 @@ fn reuse<'t>(
         gpu.check()?;
         *kept = Some(targets);
     }
-    kept.as_ref().ok_or_else(|| RenderError::Device("no render targets".to_owned()))
+    kept.as_ref().ok_or_else(no_targets)
 }
 
-/// Uploads view, lights and instances; also returns the frame's pre-exposure.
-fn frame_data(
+fn no_targets() -> RenderError {
+    RenderError::Device("no render targets".to_owned())
+}
+
+/// Uploads view, lights and instances; returns the frame's pre-exposure.
+fn update_frame(
+    frame: &mut FrameData,
     gpu: &Gpu,
     layouts: &Layouts,
     scene: &SceneOnGpu,
     view: &View,
     chosen: &[usize],
-) -> Result<(FrameData, f32), RenderError> {
+) -> Result<f32, RenderError> {
     let lit = chosen.iter().map(|&l| &scene.lights[l]);
     let pre_exposure =
         lights::pre_exposure(lit.clone(), &scene.bounds, &[scene.ambient, scene.background, scene.emission]);
     let records: Vec<LightRecord> = lit.map(|light| lights::record(light, view, pre_exposure)).collect();
     let ambient = scene.ambient.map(|c| c * pre_exposure);
-    let frame = FrameData::new(gpu, layouts, view, &scene.instances, &records, ambient, pre_exposure)?;
-    Ok((frame, pre_exposure))
+    if !frame.holds(records.len()) {
+        // A light may be chosen more than once.
+        *frame = FrameData::new(gpu, layouts, scene.instances.len(), records.len())?;
+    }
+    frame.update(gpu, view, &scene.instances, &records, ambient, pre_exposure);
+    Ok(pre_exposure)
 }
 
 /// The nearest finite half float that is not negative.
@@ -260,7 +291,7 @@ fn light_figures(
     LightFigures {
         kind,
         casters: figures.casters,
-        culled: figures.culled,
+        culled: figures.reasons().map(|(reason, count)| (reason.name(), count)).collect(),
         cases: figures.cases,
         triangles: crate::TriangleFigures {
             sides: figures.triangles.sides,

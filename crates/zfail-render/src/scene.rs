@@ -5,7 +5,7 @@ use crate::geometry::MeshBuffers;
 use crate::layouts::Layouts;
 use crate::{Gpu, RenderError, Settings, check, materials};
 use zfail::{Caster, Counting, Frame, LightStats, ShadowLight, Shadows};
-use zfail_plan::scene::{Bounds, Instance, Light, Scene};
+use zfail_plan::scene::{Bounds, Instance, Light, Mesh, Pose, Scene};
 use zfail_plan::view::View;
 
 /// Uploaded meshes and materials, registered casters, and the plain data that frames are made from.
@@ -19,6 +19,8 @@ pub struct SceneOnGpu {
     pub instances: Vec<Instance>,
     pub lights: Vec<Light>,
     pub bounds: Bounds,
+    /// Of every mesh, object space.
+    mesh_bounds: Vec<Bounds>,
     pub ambient: [f32; 3],
     pub background: [f32; 3],
     /// Radiance of the strongest emission.
@@ -42,11 +44,12 @@ impl SceneOnGpu {
                 continue;
             }
             meshes.push(Some(MeshBuffers::new(gpu, mesh)?));
+            let surface = |t| scene.triangle_surface(m, t);
             let casts = |t| scene.triangle_casts(m, t);
             let casting =
                 scene.instances.iter().any(|i| i.mesh == m && i.casts_shadow) && (0..mesh.triangles.len()).any(casts);
             ids.push(if casting {
-                Some(shadows.add_mesh(&gpu.device, &gpu.queue, &mesh.positions, &mesh.triangles, casts)?)
+                Some(shadows.add_mesh(&gpu.device, &gpu.queue, &mesh.positions, &mesh.triangles, surface)?)
             } else {
                 None
             });
@@ -70,6 +73,7 @@ impl SceneOnGpu {
             instances: scene.instances.clone(),
             lights: scene.lights.clone(),
             bounds: scene.bounds(),
+            mesh_bounds: scene.meshes.iter().map(Mesh::bounds).collect(),
             ambient: scene.ambient,
             background: scene.background,
             emission,
@@ -79,6 +83,32 @@ impl SceneOnGpu {
         };
         gpu.check()?;
         Ok(on_gpu)
+    }
+
+    /// Moves instances and lights in place.
+    pub fn pose(&mut self, pose: &Pose) -> Result<(), RenderError> {
+        check::pose(pose, self.instances.len(), self.lights.len())?;
+        for (instance, &world_from_object) in self.instances.iter_mut().zip(&pose.instances) {
+            instance.world_from_object = world_from_object;
+        }
+        for (&caster, &world_from_object) in self.caster_of.iter().zip(&pose.instances) {
+            if let Some(caster) = caster {
+                self.casters[caster].world_from_object = world_from_object;
+            }
+        }
+        for (light, &kind) in self.lights.iter_mut().zip(&pose.lights) {
+            light.kind = kind;
+        }
+        self.bounds = Bounds::EMPTY;
+        for instance in &self.instances {
+            let world = self.mesh_bounds[instance.mesh].transformed(&instance.world_from_object);
+            if !world.is_empty() {
+                self.bounds.add(world.min);
+                self.bounds.add(world.max);
+            }
+        }
+        self.draws.pose(&self.instances);
+        Ok(())
     }
 
     /// The lights that `settings` choose, as indices into [`Self::lights`].
@@ -109,8 +139,9 @@ impl SceneOnGpu {
             .zip(&excluded)
             .map(|(&l, excluded)| ShadowLight { kind: self.lights[l].kind, excluded })
             .collect();
-        let technique = settings.technique;
-        let frame = Frame { view, casters: &self.casters, lights: &lights, technique, counting };
-        Ok(self.shadows.prepare(&gpu.device, &gpu.queue, &frame)?)
+        let (measures, receivers) = (settings.technique.measures(), &[self.bounds]);
+        let frame = Frame { view, casters: &self.casters, lights: &lights, receivers, measures, counting };
+        self.shadows.prepare(&gpu.device, &gpu.queue, &frame)?;
+        Ok((0..chosen.len()).map(|light| self.shadows.stats(light)).collect())
     }
 }

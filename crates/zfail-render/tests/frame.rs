@@ -4,7 +4,7 @@ mod support;
 
 use support::{add, at, gpu, light, look, matt, picture, plain, square, sun, wall};
 use zfail_render::zfail_plan::glam::{DAffine3, DVec3};
-use zfail_render::zfail_plan::scene::{LightKind, Material, Scene};
+use zfail_render::zfail_plan::scene::{LightKind, Material, Pose, Scene};
 use zfail_render::zfail_plan::view::{Projection, View};
 use zfail_render::{AovKind, Gpu, GpuOptions, RenderError, Renderer, Settings, Technique};
 
@@ -247,4 +247,40 @@ fn the_gl_backend_agrees() {
     // Edges may fall to the other side of a pixel's centre.
     assert!(differ(&one.shadow[0], &other.shadow[0]) < 40 && differ(&one.stencil[0], &other.stencil[0]) < 40);
     assert!(one.shadow[0].iter().filter(|&&s| s == 0).count() > 100, "no shadow to compare");
+}
+
+#[test]
+fn a_pose_moves_what_a_new_renderer_would_show() {
+    let Some(gpu) = gpu() else { return };
+    let (scene, view) = hovering();
+    let mut moved = scene.clone();
+    // Mirrored, so that the draw's state changes as well.
+    moved.instances[1].world_from_object = DAffine3::from_scale_rotation_translation(
+        DVec3::new(-1.0, 1.0, 1.0),
+        Default::default(),
+        DVec3::new(0.4, 0.2, 1.5),
+    );
+    moved.lights[0].kind = LightKind::Point { position: DVec3::new(0.0, 1.0, 3.0), range: f64::INFINITY };
+    let pose = |s: &Scene| Pose {
+        instances: s.instances.iter().map(|i| i.world_from_object).collect(),
+        lights: s.lights.iter().map(|l| l.kind).collect(),
+        cameras: Vec::new(),
+    };
+    let mut renderer = Renderer::new(&gpu, &scene).expect("a renderer");
+    let before = renderer.picture(&view, &plain()).expect("a picture").0;
+    renderer.set_pose(&pose(&moved)).expect("a pose that fits");
+    let after = renderer.picture(&view, &plain()).expect("a picture").0;
+    assert!(after == picture(&gpu, &moved, &view, &plain()));
+    assert!(after != before);
+
+    let mut short = pose(&scene);
+    short.instances.pop();
+    let mut wild = pose(&scene);
+    wild.instances[0].translation.x = f64::NAN;
+    for bad in [short, wild] {
+        assert!(matches!(renderer.set_pose(&bad), Err(RenderError::Scene(_))));
+    }
+    assert!(after == renderer.picture(&view, &plain()).expect("a picture").0, "a refused pose changes nothing");
+    renderer.set_pose(&pose(&scene)).expect("a pose that fits");
+    assert!(before == renderer.picture(&view, &plain()).expect("a picture").0);
 }
