@@ -69,17 +69,6 @@ pub struct Camera {
     pub projection: Projection,
 }
 
-/// What moves in a scene: one moment of its placements, everything else staying as it is.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Pose {
-    /// [`Instance::world_from_object`] of every instance.
-    pub instances: Vec<DAffine3>,
-    /// [`Light::kind`] of every light.
-    pub lights: Vec<LightKind>,
-    /// [`Camera::world_from_view`] of every camera.
-    pub cameras: Vec<DAffine3>,
-}
-
 impl Scene {
     /// World-space bounds of the instances' vertices, including those that cast no shadow; empty for an empty scene.
     #[must_use]
