@@ -30,6 +30,8 @@ pub enum Command {
     Render(Render),
     /// Show what is in a scene: meshes and how closed they are, lights, cameras, what is not supported.
     Info(Info),
+    /// Measure what frames cost, by technique, with shadows and without.
+    Bench(Bench),
     /// Write the built-in scenes as .glb files with their pictures.
     Gallery(Gallery),
 }
@@ -88,6 +90,40 @@ pub struct Info {
     /// Print JSON instead of text.
     #[arg(long)]
     pub json: bool,
+}
+
+/// `zfail bench`
+#[derive(Args, Debug)]
+pub struct Bench {
+    /// .glb or .gltf files, or builtin:NAME; a fixed set of built-in scenes if there is none. The first animation is
+    /// played, as the first camera sees it.
+    #[arg(value_name = "SCENE")]
+    pub scenes: Vec<String>,
+    /// Frames to measure, from the start of the animation on.
+    #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub frames: u32,
+    /// Frames per second of the animation: frame k shows the time k / F, wrapped over its duration.
+    #[arg(long, value_name = "F", default_value = "60", value_parser = parse_fps, allow_negative_numbers = true)]
+    pub fps: f64,
+    /// Size of the frames in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = Size::parse)]
+    pub size: Size,
+    /// Samples per pixel.
+    #[arg(long, value_name = "1|4", default_value = "1", value_parser = parse_samples)]
+    pub samples: u32,
+    /// Compare only these techniques.
+    #[arg(long = "technique", value_name = "A,B", value_delimiter = ',', value_parser = technique_parser())]
+    pub techniques: Vec<Technique>,
+    /// Print JSON instead of a table.
+    #[arg(long)]
+    pub json: bool,
+    /// Instead of frames, measure how planning grows with the number of triangles, up to a million.
+    #[arg(long, conflicts_with_all = ["scenes", "frames", "fps", "size", "samples", "techniques"])]
+    pub scaling: bool,
+    #[command(flatten)]
+    pub device: Device,
+    #[command(flatten)]
+    pub verbosity: Verbosity,
 }
 
 /// `zfail gallery`
@@ -297,6 +333,13 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(seconds) if seconds >= 0.0 && seconds.is_finite() => Ok(seconds),
         _ => Err("it must be a number of seconds, 0 or more".to_owned()),
+    }
+}
+
+fn parse_fps(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(fps) if fps > 0.0 && fps.is_finite() => Ok(fps),
+        _ => Err("it must be a number of frames per second, more than 0".to_owned()),
     }
 }
 

@@ -46,6 +46,14 @@ fn wrong_usage_is_one_line_and_exit_code_2() {
         (&["info", "small.gltf", "other.gltf"], &["other.gltf"]),
         (&["info", "builtin:"], &["there are: "]),
         (&["gallery"], &["DIR"]),
+        (&["bench", "builtin:nowhere"], &["built-in scene 'nowhere'", "there are: "]),
+        (&["bench", "--frames", "0"], &["--frames", "0"]),
+        (&["bench", "--fps", "0"], &["frames per second"]),
+        (&["bench", "--size", "12"], &["WIDTHxHEIGHT"]),
+        (&["bench", "--samples", "2"], &["1 or 4"]),
+        (&["bench", "--technique", "auto,everit"], &["everit", "everitt-kilgard"]),
+        (&["bench", "--scaling", "builtin:open"], &["--scaling", "SCENE"]),
+        (&["bench", "--scaling", "--frames", "9"], &["--scaling", "--frames"]),
     ];
     small_scene(folder.path());
     for (args, words) in cases {
@@ -145,7 +153,7 @@ fn help_lists_every_option_of_the_contract() {
         ]
     );
     let overview = zfail(folder.path(), &["--help"]).ok().stdout;
-    for word in ["render", "info", "gallery"] {
+    for word in ["render", "info", "bench", "gallery"] {
         assert!(overview.contains(word), "{overview}");
     }
     assert!(zfail(folder.path(), &["--version"]).ok().stdout.starts_with("zfail 0."));
