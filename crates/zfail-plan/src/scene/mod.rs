@@ -6,11 +6,13 @@ mod bounds;
 mod light;
 mod material;
 mod mesh;
+mod pose;
 
 pub use bounds::Bounds;
 pub use light::{Light, LightKind};
 pub use material::{AlphaMode, Filter, Image, Material, Texture, TextureRef, Wrap};
 pub use mesh::{Mesh, Primitive};
+pub use pose::Pose;
 
 use crate::topology::Surface;
 use crate::view::Projection;
@@ -65,17 +67,6 @@ pub struct Camera {
     pub world_from_view: DAffine3,
     /// Shape of the view volume.
     pub projection: Projection,
-}
-
-/// What moves in a scene: one moment of its placements, everything else staying as it is.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Pose {
-    /// [`Instance::world_from_object`] of every instance.
-    pub instances: Vec<DAffine3>,
-    /// [`Light::kind`] of every light.
-    pub lights: Vec<LightKind>,
-    /// [`Camera::world_from_view`] of every camera.
-    pub cameras: Vec<DAffine3>,
 }
 
 impl Scene {
