@@ -1,8 +1,8 @@
 //! From radiance to a picture: exposure, tone mapping, the mean of samples, display encoding.
 
-use crate::layouts::{BYTES, FLOATS, bind, entry, texture, uniform};
+use crate::layouts::{FLOATS, bind, entry, texture, uniform};
 use crate::pipeline::{Recipe, cleared};
-use crate::targets::{HDR, LDR, Targets, view};
+use crate::targets::{HDR, HdrTargets, LDR};
 use crate::{Gpu, shader};
 
 /// The pipeline of the pass.
@@ -17,11 +17,7 @@ impl DevelopPass {
         let fragment = wgpu::ShaderStages::FRAGMENT;
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("develop"),
-            entries: &[
-                entry(0, fragment, texture(FLOATS, samples > 1)),
-                entry(1, fragment, texture(BYTES, samples > 1)),
-                entry(2, fragment, uniform::<f32>(false)),
-            ],
+            entries: &[entry(0, fragment, texture(FLOATS, samples > 1)), entry(1, fragment, uniform::<f32>())],
         });
         let pipeline = Recipe {
             program: shader::develop(samples),
@@ -41,24 +37,20 @@ impl DevelopPass {
         &self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
-        targets: &Targets,
+        hdr: &HdrTargets,
+        ldr: &wgpu::TextureView,
         exposure: &wgpu::Buffer,
         timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) {
-        let [radiance, depth, hdr, ldr] = [&targets.radiance, &targets.depth, &targets.hdr, &targets.ldr].map(view);
         let group = bind(
             &gpu.device,
             "develop",
             &self.layout,
-            &[
-                wgpu::BindingResource::TextureView(&radiance),
-                wgpu::BindingResource::TextureView(&depth),
-                exposure.as_entire_binding(),
-            ],
+            &[wgpu::BindingResource::TextureView(&hdr.samples), exposure.as_entire_binding()],
         );
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("develop"),
-            color_attachments: &[cleared(&hdr, [0.0; 4]), cleared(&ldr, [0.0; 4])],
+            color_attachments: &[cleared(&hdr.view, [0.0; 4]), cleared(ldr, [0.0; 4])],
             timestamp_writes,
             ..Default::default()
         });

@@ -1,44 +1,40 @@
-//! What is drawn and in which order: one draw per primitive of each instance.
+//! What is drawn, how it looks, and in which order: one draw for all instances of a mesh that share a material.
 
+use crate::geometry::Vertices;
+use std::cmp::Ordering;
 use std::ops::Range;
-use zfail_plan::glam::{DAffine3, DVec3};
-use zfail_plan::scene::{AlphaMode, Bounds, Instance, Scene};
+use zfail_plan::glam::DVec3;
+use zfail_plan::scene::{AlphaMode, Bounds, Instance, Material, Mesh, Scene};
+use zfail_plan::view::View;
 
-/// One primitive of one instance.
+/// One primitive of a mesh.
 #[derive(Clone, Debug)]
-pub struct Draw {
-    /// Index into the scene's instances.
-    pub instance: usize,
+pub struct Part {
     /// Index into the scene's meshes.
     pub mesh: usize,
     /// Index into the uploaded materials, of which the last is the default one.
     pub material: usize,
     /// Range of the mesh's index buffer.
     pub indices: Range<u32>,
-    /// The fixed-function state that it needs.
-    pub state: DrawState,
+    pub look: Look,
     /// Centre of its bounds, object space.
     center: DVec3,
 }
 
-/// What a pipeline depends on.
+/// What a pipeline depends on, transforms aside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct DrawState {
-    /// How alpha is used.
+pub struct Look {
     pub alpha: Alpha,
     /// Both sides are visible.
     pub double_sided: bool,
-    /// The instance's transform turns triangles inside out.
-    pub mirrored: bool,
     /// No light applies.
     pub unlit: bool,
-}
-
-impl DrawState {
-    /// This state in every pose that its instance may take.
-    pub fn poses(self) -> [Self; 2] {
-        [false, true].map(|mirrored| Self { mirrored, ..self })
-    }
+    /// Which slots have textures: base colour, metallic-roughness, normal, occlusion, emissive.
+    pub textured: [bool; 5],
+    /// The mesh has vertex colours.
+    pub colored: bool,
+    /// Roughness is 1 everywhere.
+    pub rough: bool,
 }
 
 /// [`AlphaMode`] without its number.
@@ -49,70 +45,143 @@ pub enum Alpha {
     Blend,
 }
 
-/// Everything the scene shows.
+impl Look {
+    fn new(material: &Material, mesh: &Mesh) -> Self {
+        let slots = material_slots(material);
+        Self {
+            alpha: match material.alpha {
+                AlphaMode::Opaque => Alpha::Opaque,
+                AlphaMode::Mask(_) => Alpha::Mask,
+                AlphaMode::Blend => Alpha::Blend,
+            },
+            double_sided: material.double_sided,
+            unlit: material.unlit,
+            textured: slots.map(|slot| slot.is_some()),
+            colored: mesh.colors.iter().any(|&c| c != [1.0; 4]),
+            rough: material.roughness >= 1.0 && material.metallic_roughness_texture.is_none(),
+        }
+    }
+
+    /// What its vertex stage has to read.
+    pub fn vertices(self) -> Vertices {
+        if self.textured[2] {
+            Vertices::Mapped
+        } else if self.colored || self.textured.contains(&true) {
+            Vertices::Textured
+        } else {
+            Vertices::Plain
+        }
+    }
+}
+
+/// The texture slots in the order of the shaders.
+pub fn material_slots(material: &Material) -> [Option<zfail_plan::scene::TextureRef>; 5] {
+    [
+        material.base_color_texture,
+        material.metallic_roughness_texture,
+        material.normal_texture,
+        material.occlusion_texture,
+        material.emissive_texture,
+    ]
+}
+
+/// A part with the instances that show it.
+#[derive(Clone, Debug)]
+pub struct Draw {
+    /// Index into [`DrawList::parts`].
+    pub part: usize,
+    /// The instances' transforms turn triangles inside out.
+    pub mirrored: bool,
+    /// Range of [`DrawList::order`].
+    pub slots: Range<u32>,
+}
+
+/// Everything the scene shows, ordered for one view. Its memory is kept from frame to frame.
 #[derive(Clone, Debug)]
 pub struct DrawList {
-    /// Opaque and masked, ordered to change state seldom.
+    /// By mesh.
+    pub parts: Vec<Part>,
+    /// Instances in the order in which the device has them: those of a mesh that are wound alike follow each other, from
+    /// the nearest to the farthest.
+    pub order: Vec<usize>,
+    /// Opaque and masked.
     pub solid: Vec<Draw>,
-    /// Blended, in scene order.
+    /// From the farthest to the nearest, equals in scene order.
     pub blended: Vec<Draw>,
+    /// Has any blended part.
+    pub blends: bool,
+    distances: Vec<f64>,
+    mirrored: Vec<bool>,
 }
 
 impl DrawList {
-    /// Lists the draws of a scene that has passed [`crate::check::scene`].
+    /// Lists the parts of a scene that has passed [`crate::check::scene`].
     pub fn new(scene: &Scene) -> Self {
-        let mut list = Self { solid: Vec::new(), blended: Vec::new() };
-        for (i, instance) in scene.instances.iter().enumerate() {
-            let mesh = &scene.meshes[instance.mesh];
+        let default = Material::default();
+        let mut parts = Vec::new();
+        for (m, mesh) in scene.meshes.iter().enumerate() {
             for primitive in mesh.primitives.iter().filter(|p| !p.triangles.is_empty()) {
-                let material = primitive.material.map(|m| &scene.materials[m]);
-                let alpha = match material.map_or(AlphaMode::Opaque, |m| m.alpha) {
-                    AlphaMode::Opaque => Alpha::Opaque,
-                    AlphaMode::Mask(_) => Alpha::Mask,
-                    AlphaMode::Blend => Alpha::Blend,
-                };
                 let triangles = &mesh.triangles[primitive.triangles.start as usize..primitive.triangles.end as usize];
-                let draw = Draw {
-                    instance: i,
-                    mesh: instance.mesh,
+                parts.push(Part {
+                    mesh: m,
                     material: primitive.material.unwrap_or(scene.materials.len()),
                     indices: primitive.triangles.start * 3..primitive.triangles.end * 3,
-                    state: DrawState {
-                        alpha,
-                        double_sided: material.is_some_and(|m| m.double_sided),
-                        mirrored: mirrors(&instance.world_from_object),
-                        unlit: material.is_some_and(|m| m.unlit),
-                    },
+                    look: Look::new(primitive.material.map_or(&default, |m| &scene.materials[m]), mesh),
                     center: Bounds::of(triangles.iter().flatten().map(|&v| mesh.position(v))).center(),
-                };
-                if alpha == Alpha::Blend { &mut list.blended } else { &mut list.solid }.push(draw);
+                });
             }
         }
-        list.sort();
-        list
-    }
-
-    fn sort(&mut self) {
-        self.solid.sort_by_key(|d| (d.state, d.material, d.mesh));
-    }
-
-    /// Follows instances that were moved, since their new transforms may mirror.
-    pub fn pose(&mut self, instances: &[Instance]) {
-        for draw in self.solid.iter_mut().chain(&mut self.blended) {
-            draw.state.mirrored = mirrors(&instances[draw.instance].world_from_object);
+        let blends = parts.iter().any(|p| p.look.alpha == Alpha::Blend);
+        Self {
+            parts,
+            order: (0..scene.instances.len()).collect(),
+            solid: Vec::new(),
+            blended: Vec::new(),
+            blends,
+            distances: Vec::new(),
+            mirrored: Vec::new(),
         }
-        self.sort();
     }
-}
 
-fn mirrors(world_from_object: &DAffine3) -> bool {
-    world_from_object.matrix3.determinant() < 0.0
-}
+    /// Orders everything for `view`; `centers` are the instances' in world space.
+    pub fn arrange(&mut self, view: &View, instances: &[Instance], centers: impl Fn(usize) -> DVec3) {
+        let back = view.world_from_view.matrix3.z_axis;
+        self.distances.clear();
+        self.distances.extend((0..instances.len()).map(|i| back.dot(view.eye() - centers(i))));
+        self.mirrored.clear();
+        self.mirrored.extend(instances.iter().map(|i| i.world_from_object.matrix3.determinant() < 0.0));
+        let (distances, mirrored) = (&self.distances, &self.mirrored);
+        self.order.sort_unstable_by(|&a, &b| {
+            let group = |i: usize| (instances[i].mesh, mirrored[i]);
+            group(a).cmp(&group(b)).then(distances[a].total_cmp(&distances[b])).then(a.cmp(&b))
+        });
 
-/// `draws` from the farthest to the nearest, equals in scene order.
-pub fn back_to_front<'d>(draws: &'d [Draw], view_from_object: &[DAffine3]) -> Vec<&'d Draw> {
-    let mut sorted: Vec<_> =
-        draws.iter().map(|d| (view_from_object[d.instance].transform_point3(d.center).z, d)).collect();
-    sorted.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-    sorted.into_iter().map(|(_, d)| d).collect()
+        self.solid.clear();
+        self.blended.clear();
+        let mut start = 0;
+        for run in self.order.chunk_by(|&a, &b| instances[a].mesh == instances[b].mesh && mirrored[a] == mirrored[b]) {
+            let slots = start..start + run.len() as u32;
+            start = slots.end;
+            let (mesh, mirrored) = (instances[run[0]].mesh, mirrored[run[0]]);
+            let first = self.parts.partition_point(|p| p.mesh < mesh);
+            for (part, p) in self.parts.iter().enumerate().skip(first).take_while(|(_, p)| p.mesh == mesh) {
+                if p.look.alpha == Alpha::Blend {
+                    self.blended.extend(slots.clone().map(|s| Draw { part, mirrored, slots: s..s + 1 }));
+                } else {
+                    self.solid.push(Draw { part, mirrored, slots: slots.clone() });
+                }
+            }
+        }
+        let (order, parts) = (&self.order, &self.parts);
+        let instance = |d: &Draw| order[d.slots.start as usize];
+        self.solid.sort_by(|a, b| distances[instance(a)].total_cmp(&distances[instance(b)]));
+        let depth = |d: &Draw| {
+            let center = instances[instance(d)].world_from_object.transform_point3(parts[d.part].center);
+            back.dot(center - view.eye())
+        };
+        self.blended.sort_by(|a, b| match depth(a).total_cmp(&depth(b)) {
+            Ordering::Equal => (instance(a), a.part).cmp(&(instance(b), b.part)),
+            order => order,
+        });
+    }
 }

@@ -1,8 +1,7 @@
 //! Exposure: one number that scales radiance, given by the caller or measured on the device.
 
-use crate::layouts::{BYTES, FLOATS, bind, entry, texture};
+use crate::layouts::{FLOATS, bind, entry, texture};
 use crate::settings::Exposure;
-use crate::targets::{Targets, view};
 use crate::{Gpu, shader};
 
 /// As in `meter.wgsl`.
@@ -33,9 +32,8 @@ impl ExposureMeter {
             label: Some("meter"),
             entries: &[
                 entry(0, compute, texture(FLOATS, samples > 1)),
-                entry(1, compute, texture(BYTES, samples > 1)),
+                entry(1, compute, storage),
                 entry(2, compute, storage),
-                entry(3, compute, storage),
             ],
         });
         let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -76,7 +74,8 @@ impl ExposureMeter {
         &self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
-        targets: &Targets,
+        radiance: &wgpu::TextureView,
+        size: [u32; 2],
         exposure: Exposure,
         pre_exposure: f32,
     ) {
@@ -85,14 +84,12 @@ impl ExposureMeter {
             gpu.queue.write_buffer(&self.exposure, 0, bytemuck::bytes_of(&scale));
             return;
         }
-        let views = [&targets.radiance, &targets.depth].map(view);
         let group = bind(
             &gpu.device,
             "meter",
             &self.layout,
             &[
-                wgpu::BindingResource::TextureView(&views[0]),
-                wgpu::BindingResource::TextureView(&views[1]),
+                wgpu::BindingResource::TextureView(radiance),
                 self.histogram.as_entire_binding(),
                 self.exposure.as_entire_binding(),
             ],
@@ -101,7 +98,7 @@ impl ExposureMeter {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_bind_group(0, &group, &[]);
         pass.set_pipeline(&self.count);
-        pass.dispatch_workgroups(targets.size[0].div_ceil(TILE), targets.size[1].div_ceil(TILE), 1);
+        pass.dispatch_workgroups(size[0].div_ceil(TILE), size[1].div_ceil(TILE), 1);
         pass.set_pipeline(&self.expose);
         pass.dispatch_workgroups(1, 1, 1);
     }

@@ -1,136 +1,111 @@
 //! What all passes of one frame read: the view, the lights in view space, the placement of every instance.
 
-use crate::draw_list::{Draw, DrawList, DrawState, back_to_front};
-use crate::geometry::MeshBuffers;
-use crate::gpu_data::{FrameUniform, InstanceUniform, LightRecord};
+use crate::gpu_data::{FrameUniform, InstanceRecord, LightRecord, UNROLLED};
 use crate::layouts::{Layouts, bind};
 use crate::{Gpu, RenderError};
-use zfail_plan::glam::{DAffine3, DMat3, DMat4};
-use zfail_plan::scene::Instance;
+use bytemuck::Pod;
+use zfail_plan::glam::{DAffine3, DMat3};
 use zfail_plan::view::{Projection, View};
 
-/// Uniforms of a frame, on the device. The buffers stay from frame to frame.
+/// Data of a frame, on the device. The buffers grow to the largest frame seen.
 #[derive(Debug)]
 pub struct FrameData {
     /// Group 0 of every pass that knows the view.
     pub bind_group: wgpu::BindGroup,
-    instances: wgpu::BindGroup,
+    /// [`InstanceRecord`]s in the order of the draw list.
+    pub instances: wgpu::Buffer,
     uniform: wgpu::Buffer,
     lights: wgpu::Buffer,
-    placements: wgpu::Buffer,
-    /// Bytes from one instance's uniform to the next.
-    instance_stride: u32,
-    view_from_object: Vec<DAffine3>,
-    /// What `placements` holds, kept for its memory.
-    bytes: Vec<u8>,
+    /// Indices of lights, the range of every instance after the other.
+    lists: wgpu::Buffer,
+    records: Vec<InstanceRecord>,
+    listed: Vec<u32>,
+}
+
+/// The numbers of a frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Shading<'a> {
+    /// Pre-exposed.
+    pub lights: &'a [LightRecord],
+    /// Pre-exposed.
+    pub ambient: [f32; 3],
+    /// Scale from scene radiance to what shaders compute with.
+    pub pre_exposure: f32,
+    /// Scale from there to the picture.
+    pub exposure: f32,
 }
 
 impl FrameData {
-    /// Buffers for frames with `lights` lights and `instances` instances.
-    pub fn new(gpu: &Gpu, layouts: &Layouts, instances: usize, lights: usize) -> Result<Self, RenderError> {
-        let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment;
-        let stride = (size_of::<InstanceUniform>() as u32).next_multiple_of(alignment);
-        let uniform = buffer(gpu, "frame", wgpu::BufferUsages::UNIFORM, size_of::<FrameUniform>())?;
-        let lights = buffer(gpu, "lights", wgpu::BufferUsages::STORAGE, lights.max(1) * size_of::<LightRecord>())?;
-        let size = instances.max(1) * stride as usize;
-        let placements = buffer(gpu, "instances", wgpu::BufferUsages::UNIFORM, size)?;
-        let window = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-            buffer: &placements,
-            offset: 0,
-            size: std::num::NonZeroU64::new(size_of::<InstanceUniform>() as u64),
-        });
-        let resources = [uniform.as_entire_binding(), lights.as_entire_binding()];
-        Ok(Self {
-            bind_group: bind(&gpu.device, "frame", &layouts.frame, &resources),
-            instances: bind(&gpu.device, "instance", &layouts.instance, &[window]),
-            uniform,
-            lights,
-            placements,
-            instance_stride: stride,
-            view_from_object: Vec::new(),
-            bytes: vec![0; size],
-        })
+    pub fn new(gpu: &Gpu, layouts: &Layouts) -> Self {
+        let uniform = buffer(gpu, "frame", wgpu::BufferUsages::UNIFORM, size_of::<FrameUniform>() as u64);
+        let lights = buffer(gpu, "lights", wgpu::BufferUsages::STORAGE, size_of::<LightRecord>() as u64);
+        let lists = buffer(gpu, "lists of lights", wgpu::BufferUsages::STORAGE, 4);
+        let instances = buffer(gpu, "instances", wgpu::BufferUsages::VERTEX, size_of::<InstanceRecord>() as u64);
+        let bind_group = group(gpu, layouts, &uniform, &lights, &lists);
+        Self { bind_group, instances, uniform, lights, lists, records: Vec::new(), listed: Vec::new() }
     }
 
-    /// Whether `lights` lights fit.
-    pub fn holds(&self, lights: usize) -> bool {
-        (lights * size_of::<LightRecord>()) as u64 <= self.lights.size()
-    }
-
-    /// Uploads a frame; `ambient` and the lights are pre-exposed, and there are no more of either than room for them.
-    pub fn update(
+    /// Uploads view, lights and, in their order, instances.
+    pub fn update<'i>(
         &mut self,
         gpu: &Gpu,
+        layouts: &Layouts,
         view: &View,
-        instances: &[Instance],
-        lights: &[LightRecord],
-        ambient: [f32; 3],
-        pre_exposure: f32,
-    ) {
+        shading: &Shading<'_>,
+        instances: impl Iterator<Item = &'i DAffine3>,
+        reaches: impl Fn(usize, usize) -> bool,
+    ) -> Result<(), RenderError> {
+        let lights = shading.lights;
+        let clip_from_view = view.clip_from_view();
+        let mut first = [LightRecord::default(); UNROLLED];
+        for (slot, light) in first.iter_mut().zip(lights) {
+            *slot = *light;
+        }
         let uniform = FrameUniform {
-            view_per_ndc: view_per_ndc(view),
+            view_per_ndc: [clip_from_view.x_axis.x.recip() as f32, clip_from_view.y_axis.y.recip() as f32],
             size: view.size.map(|s| s as f32),
-            ambient,
+            ambient: shading.ambient,
             orthographic: if matches!(view.projection, Projection::Orthographic { .. }) { 1.0 } else { 0.0 },
-            pre_exposure,
+            pre_exposure: shading.pre_exposure,
+            exposure: shading.exposure,
             light_count: lights.len() as u32,
-            pad: [0; 2],
+            pad: 0,
+            lights: first,
         };
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
-        gpu.queue.write_buffer(&self.lights, 0, bytemuck::cast_slice(lights));
-        for (slot, instance) in self.bytes.chunks_exact_mut(self.instance_stride as usize).zip(instances) {
-            let uniform = instance_uniform(view, &instance.world_from_object);
-            slot[..size_of::<InstanceUniform>()].copy_from_slice(bytemuck::bytes_of(&uniform));
-        }
-        gpu.queue.write_buffer(&self.placements, 0, &self.bytes);
-        self.view_from_object.clear();
-        self.view_from_object.extend(instances.iter().map(|i| view.view_from_object(&i.world_from_object)));
-    }
 
-    /// The scene's blended draws from back to front.
-    pub fn blended<'d>(&self, list: &'d DrawList) -> Vec<&'d Draw> {
-        back_to_front(&list.blended, &self.view_from_object)
-    }
-
-    /// Draws `draws` in order, `pipelines` giving one pipeline after the other for each.
-    pub fn draw<'d, 'p, P>(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        draws: impl IntoIterator<Item = &'d Draw>,
-        meshes: &[Option<MeshBuffers>],
-        materials: &[wgpu::BindGroup],
-        pipelines: impl Fn(DrawState) -> P,
-    ) where
-        P: IntoIterator<Item = &'p wgpu::RenderPipeline>,
-    {
-        pass.set_bind_group(0, &self.bind_group, &[]);
-        for draw in draws {
-            let Some(mesh) = &meshes[draw.mesh] else { continue };
-            mesh.bind(pass);
-            pass.set_bind_group(1, &self.instances, &[draw.instance as u32 * self.instance_stride]);
-            pass.set_bind_group(2, &materials[draw.material], &[]);
-            for pipeline in pipelines(draw.state) {
-                pass.set_pipeline(pipeline);
-                pass.draw_indexed(draw.indices.clone(), 0, 0..1);
+        self.records.clear();
+        self.listed.clear();
+        for (i, world_from_object) in instances.enumerate() {
+            let start = self.listed.len() as u32;
+            if lights.len() > UNROLLED {
+                self.listed.extend((0..lights.len()).filter(|&l| reaches(l, i)).map(|l| l as u32));
             }
+            self.records.push(record(view, world_from_object, [start, self.listed.len() as u32]));
         }
+        let usage = wgpu::BufferUsages::STORAGE;
+        let grown = [
+            write(gpu, &mut self.lights, "lights", usage, lights)?,
+            write(gpu, &mut self.lists, "lists of lights", usage, &self.listed)?,
+        ];
+        write(gpu, &mut self.instances, "instances", wgpu::BufferUsages::VERTEX, &self.records)?;
+        if grown.contains(&true) {
+            self.bind_group = group(gpu, layouts, &self.uniform, &self.lights, &self.lists);
+        }
+        Ok(())
     }
 }
 
-/// View-space x and y per unit of NDC: at unit depth (perspective), or anywhere (orthographic).
-pub fn view_per_ndc(view: &View) -> [f32; 2] {
-    let clip_from_view = view.clip_from_view();
-    [clip_from_view.x_axis.x.recip() as f32, clip_from_view.y_axis.y.recip() as f32]
-}
-
-fn instance_uniform(view: &View, world_from_object: &DAffine3) -> InstanceUniform {
+fn record(view: &View, world_from_object: &DAffine3, lights: [u32; 2]) -> InstanceRecord {
     let view_from_object = view.view_from_object(world_from_object);
-    InstanceUniform {
+    let m = view_from_object.matrix3;
+    let row = |i: usize| m.row(i).extend(view_from_object.translation[i]).as_vec4().to_array();
+    InstanceRecord {
         clip_from_object: view.clip_from_object(world_from_object).to_cols_array_2d(),
-        view_from_object: DMat4::from(view_from_object).as_mat4().to_cols_array_2d(),
-        view_from_object_normal: DMat4::from_mat3(normal_matrix(&view_from_object.matrix3))
-            .as_mat4()
-            .to_cols_array_2d(),
+        view_from_object: [row(0), row(1), row(2)],
+        normal: normal_matrix(&m).as_mat3().to_cols_array_2d(),
+        lights,
+        pad: 0,
     }
 }
 
@@ -142,16 +117,45 @@ fn normal_matrix(m: &DMat3) -> DMat3 {
     if greatest > 0.0 { cofactors * scale.recip() } else { DMat3::ZERO }
 }
 
-fn buffer(gpu: &Gpu, label: &str, usage: wgpu::BufferUsages, size: usize) -> Result<wgpu::Buffer, RenderError> {
-    if size as u64 > gpu.device.limits().max_buffer_size {
+/// Writes `data`, into a larger buffer if need be; returns whether it is a new one.
+fn write<T: Pod>(
+    gpu: &Gpu,
+    target: &mut wgpu::Buffer,
+    label: &str,
+    usage: wgpu::BufferUsages,
+    data: &[T],
+) -> Result<bool, RenderError> {
+    let bytes: &[u8] = bytemuck::cast_slice(data);
+    let size = bytes.len() as u64;
+    let limits = gpu.device.limits();
+    if size > limits.max_buffer_size.min(limits.max_storage_buffer_binding_size) {
         return Err(RenderError::Scene(format!("too many {label} for this device")));
     }
-    Ok(gpu.device.create_buffer(&wgpu::BufferDescriptor {
+    let grow = size > target.size();
+    if grow {
+        *target = buffer(gpu, label, usage, size);
+    }
+    gpu.queue.write_buffer(target, 0, bytes);
+    Ok(grow)
+}
+
+fn buffer(gpu: &Gpu, label: &str, usage: wgpu::BufferUsages, size: u64) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
-        size: size as u64,
+        size,
         usage: usage | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
-    }))
+    })
+}
+
+fn group(
+    gpu: &Gpu,
+    layouts: &Layouts,
+    uniform: &wgpu::Buffer,
+    lights: &wgpu::Buffer,
+    lists: &wgpu::Buffer,
+) -> wgpu::BindGroup {
+    bind(&gpu.device, "frame", &layouts.frame, &[uniform, lights, lists].map(wgpu::Buffer::as_entire_binding))
 }
 
 #[cfg(test)]

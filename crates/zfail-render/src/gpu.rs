@@ -34,6 +34,8 @@ pub struct Gpu {
     pub(crate) depth_stencil: wgpu::TextureFormat,
     /// Whether GPU times can be trusted.
     pub(crate) timestamps: bool,
+    /// Whether draws within a pass can be timed.
+    pub(crate) timestamps_inside: bool,
     /// The first error that the device reported since it was last asked.
     failure: Arc<Mutex<Option<String>>>,
 }
@@ -74,8 +76,11 @@ impl Gpu {
     async fn from_adapter(adapter: &wgpu::Adapter) -> Result<Self, String> {
         let info = adapter.get_info();
         // GL drivers report timer values that are not times (Mesa's software GL).
-        let timing =
-            if info.backend == wgpu::Backend::Gl { wgpu::Features::empty() } else { wgpu::Features::TIMESTAMP_QUERY };
+        let timing = if info.backend == wgpu::Backend::Gl {
+            wgpu::Features::empty()
+        } else {
+            wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES
+        };
         let features = zfail::wanted_features(adapter.features()) | (adapter.features() & timing);
         let (device, queue) = adapter
             .request_device(&wgpu::DeviceDescriptor {
@@ -94,6 +99,7 @@ impl Gpu {
         Ok(Self {
             depth_stencil: zfail::depth_stencil_format(device.features()),
             timestamps: device.features().contains(wgpu::Features::TIMESTAMP_QUERY),
+            timestamps_inside: device.features().contains(timing) && !timing.is_empty(),
             device,
             queue,
             info,

@@ -2,6 +2,9 @@
 
 use bytemuck::{Pod, Zeroable};
 
+/// How many lights shaders know without a loop: `UNROLLED` in `frame.wgsl`.
+pub const UNROLLED: usize = 4;
+
 /// `Frame` in `frame.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
@@ -11,20 +14,28 @@ pub struct FrameUniform {
     pub ambient: [f32; 3],
     pub orthographic: f32,
     pub pre_exposure: f32,
+    pub exposure: f32,
     pub light_count: u32,
-    pub pad: [u32; 2],
+    pub pad: u32,
+    pub lights: [LightRecord; UNROLLED],
 }
 
-/// `Instance` in `surface.wgsl`; matrices by columns.
+/// The attributes that step by instance, in the `Vertex` of every vertex stage.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct InstanceUniform {
+pub struct InstanceRecord {
+    /// By columns.
     pub clip_from_object: [[f32; 4]; 4],
-    pub view_from_object: [[f32; 4]; 4],
-    pub view_from_object_normal: [[f32; 4]; 4],
+    /// By rows.
+    pub view_from_object: [[f32; 4]; 3],
+    /// By columns: the inverse transpose, up to a positive factor.
+    pub normal: [[f32; 3]; 3],
+    /// Range of the lists of lights.
+    pub lights: [u32; 2],
+    pub pad: u32,
 }
 
-/// `Slot` in `surface.wgsl`.
+/// `Slot` in `material.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct SlotUniform {
@@ -32,7 +43,7 @@ pub struct SlotUniform {
     pub v: [f32; 4],
 }
 
-/// `Material` in `surface.wgsl`.
+/// `Material` in `material.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct MaterialUniform {
@@ -43,19 +54,16 @@ pub struct MaterialUniform {
     pub roughness: f32,
     pub normal_scale: f32,
     pub occlusion_strength: f32,
-    pub textured: u32,
-    pub unlit: u32,
-    pub pad: [u32; 2],
     /// Base colour, metallic-roughness, normal, occlusion, emissive.
     pub slots: [SlotUniform; 5],
 }
 
-/// `Light` in `light.wgsl`.
+/// `Light` in `frame.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct LightRecord {
     pub position: [f32; 3],
-    pub kind: u32,
+    pub placed: f32,
     pub axis: [f32; 3],
     pub per_range: f32,
     pub color: [f32; 3],
@@ -64,14 +72,4 @@ pub struct LightRecord {
     pub angle_scale: f32,
     pub angle_offset: f32,
     pub pad: u32,
-}
-
-/// The vertex attributes beside the position, in `surface.wgsl`'s `Vertex`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct VertexAttributes {
-    pub normal: [f32; 3],
-    pub tangent: [f32; 4],
-    pub uv: [f32; 4],
-    pub color: [f32; 4],
 }

@@ -1,15 +1,15 @@
-//! Bind group layouts: group 0 the frame, group 1 an instance or the G-buffer, group 2 a material.
+//! Bind group layouts: group 0 the frame, group 1 a material or the measured attributes, group 2 the verdicts.
 
-use crate::gpu_data::{FrameUniform, InstanceUniform, LightRecord, MaterialUniform};
+use crate::gpu_data::{FrameUniform, LightRecord, MaterialUniform};
 use std::num::NonZeroU64;
 
 /// The layouts that every pass agrees on.
 #[derive(Debug)]
 pub struct Layouts {
     pub frame: wgpu::BindGroupLayout,
-    pub instance: wgpu::BindGroupLayout,
     pub material: wgpu::BindGroupLayout,
-    gbuffer: [wgpu::BindGroupLayout; 2],
+    pub attributes: wgpu::BindGroupLayout,
+    verdicts: [wgpu::BindGroupLayout; 2],
 }
 
 impl Layouts {
@@ -17,38 +17,30 @@ impl Layouts {
         let create = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
         };
-        let mut material = vec![entry(0, wgpu::ShaderStages::FRAGMENT, uniform::<MaterialUniform>(false))];
+        let fragment = wgpu::ShaderStages::FRAGMENT;
+        let mut material = vec![entry(0, fragment, uniform::<MaterialUniform>())];
         for slot in 0..5 {
-            material.push(entry(1 + 2 * slot, wgpu::ShaderStages::FRAGMENT, texture(FILTERED, false)));
+            material.push(entry(1 + 2 * slot, fragment, texture(FILTERED, false)));
             let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-            material.push(entry(2 + 2 * slot, wgpu::ShaderStages::FRAGMENT, sampler));
+            material.push(entry(2 + 2 * slot, fragment, sampler));
         }
-        let lights = wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Storage { read_only: true },
-            has_dynamic_offset: false,
-            min_binding_size: NonZeroU64::new(size_of::<LightRecord>() as u64),
-        };
         Self {
             frame: create(
                 "frame",
                 &[
-                    entry(0, wgpu::ShaderStages::VERTEX_FRAGMENT, uniform::<FrameUniform>(false)),
-                    entry(1, wgpu::ShaderStages::FRAGMENT, lights),
+                    entry(0, fragment, uniform::<FrameUniform>()),
+                    entry(1, fragment, storage::<LightRecord>()),
+                    entry(2, fragment, storage::<u32>()),
                 ],
             ),
-            instance: create("instance", &[entry(0, wgpu::ShaderStages::VERTEX, uniform::<InstanceUniform>(true))]),
             material: create("material", &material),
-            gbuffer: [false, true].map(|multisampled| {
-                let load = |binding, sample_type| {
-                    entry(binding, wgpu::ShaderStages::FRAGMENT, texture(sample_type, multisampled))
-                };
-                create("G-buffer", &[load(0, FLOATS), load(1, FLOATS), load(2, FLOATS), load(3, BYTES)])
-            }),
+            attributes: create("attributes", &[entry(0, fragment, texture(BYTES, false))]),
+            verdicts: [false, true].map(|multi| create("verdicts", &[entry(0, fragment, texture(FLOATS, multi))])),
         }
     }
 
-    pub fn gbuffer(&self, samples: u32) -> &wgpu::BindGroupLayout {
-        &self.gbuffer[usize::from(samples > 1)]
+    pub fn verdicts(&self, samples: u32) -> &wgpu::BindGroupLayout {
+        &self.verdicts[usize::from(samples > 1)]
     }
 }
 
@@ -56,20 +48,25 @@ pub fn entry(binding: u32, visibility: wgpu::ShaderStages, ty: wgpu::BindingType
     wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None }
 }
 
-pub fn uniform<T>(has_dynamic_offset: bool) -> wgpu::BindingType {
-    wgpu::BindingType::Buffer {
-        ty: wgpu::BufferBindingType::Uniform,
-        has_dynamic_offset,
-        min_binding_size: NonZeroU64::new(size_of::<T>() as u64),
-    }
+pub fn uniform<T>() -> wgpu::BindingType {
+    buffer::<T>(wgpu::BufferBindingType::Uniform)
+}
+
+fn storage<T>() -> wgpu::BindingType {
+    buffer::<T>(wgpu::BufferBindingType::Storage { read_only: true })
+}
+
+fn buffer<T>(ty: wgpu::BufferBindingType) -> wgpu::BindingType {
+    let min_binding_size = NonZeroU64::new(size_of::<T>() as u64);
+    wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size }
 }
 
 /// Sampled textures.
-pub const FILTERED: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: true };
+const FILTERED: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: true };
 /// Targets whose texels are loaded.
 pub const FLOATS: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: false };
-/// The depth target.
-pub const BYTES: wgpu::TextureSampleType = wgpu::TextureSampleType::Uint;
+/// The distances of the attribute pass.
+const BYTES: wgpu::TextureSampleType = wgpu::TextureSampleType::Uint;
 
 pub fn texture(sample_type: wgpu::TextureSampleType, multisampled: bool) -> wgpu::BindingType {
     wgpu::BindingType::Texture { sample_type, view_dimension: wgpu::TextureViewDimension::D2, multisampled }

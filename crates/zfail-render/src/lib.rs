@@ -2,23 +2,23 @@
 //! (2003), section 8, around the shadow determination of [`zfail`].
 //!
 //! In: a [`Scene`](zfail_plan::scene::Scene) and a [`View`](zfail_plan::view::View). Out: a [`Picture`] with
-//! [`FrameStats`], or [`Aovs`]. Shading is deferred, so a texture is read once per pixel however many lights there are:
-//! the ambient pass keeps what it has read, each light's illumination pass adds to a half-float sum where the stencil
-//! says lit, and the final pass lays blended materials over it.
+//! [`FrameStats`], or [`Aovs`]. Shading is forward, all lights in one draw: the verdict pass counts every light's volumes
+//! after the other and keeps a bit per light and sample; the forward pass adds up the lights whose bit says lit, and
+//! where exposure is known beforehand it writes the finished picture.
 
-mod ambient_pass;
 mod aov;
+mod attribute_outputs;
+mod attribute_pass;
 mod check;
 mod develop_pass;
 mod draw_list;
 mod error;
 mod exposure;
-mod final_pass;
+mod forward_pass;
 mod frame;
 mod geometry;
 mod gpu;
 mod gpu_data;
-mod illuminate_pass;
 mod layouts;
 mod lights;
 mod mask_pass;
@@ -34,10 +34,11 @@ mod shader;
 mod shadow_pass;
 mod srgb;
 mod stats;
-mod surface_outputs;
 mod targets;
 mod textures;
 mod timing;
+mod tone_map;
+mod verdict_pass;
 
 pub use aov::{AovKind, Aovs, UnknownAov};
 pub use error::RenderError;

@@ -5,25 +5,26 @@ use zfail_plan::glam::DVec3;
 use zfail_plan::scene::{Bounds, Light, LightKind};
 use zfail_plan::view::View;
 
-const POINT: u32 = 0;
-const SPOT: u32 = 1;
-const DIRECTIONAL: u32 = 2;
-
 /// `light` in the space of `view`, its intensity multiplied by `pre_exposure`.
 pub fn record(light: &Light, view: &View, pre_exposure: f32) -> LightRecord {
     let view_from_world = view.world_from_view.matrix3.transpose();
     let place = |p: DVec3| (view_from_world * (p - view.eye())).as_vec3().to_array();
     let turn = |d: DVec3| (view_from_world * d).as_vec3().to_array();
-    let common = LightRecord { color: light.color.map(|c| c * light.intensity * pre_exposure), ..Default::default() };
+    let common = LightRecord {
+        color: light.color.map(|c| c * light.intensity * pre_exposure),
+        placed: 1.0,
+        cos_outer: -1.0,
+        angle_offset: 1.0,
+        ..Default::default()
+    };
     match light.kind {
         LightKind::Point { position, range } => {
-            LightRecord { kind: POINT, position: place(position), per_range: per_range(range), ..common }
+            LightRecord { position: place(position), per_range: per_range(range), ..common }
         }
         LightKind::Spot { position, direction, range, inner, outer } => {
             // KHR_lights_punctual, "Inner and Outer Cone Angles".
             let angle_scale = 1.0 / (inner.cos() - outer.cos()).max(0.001);
             LightRecord {
-                kind: SPOT,
                 position: place(position),
                 axis: turn(direction),
                 per_range: per_range(range),
@@ -34,13 +35,23 @@ pub fn record(light: &Light, view: &View, pre_exposure: f32) -> LightRecord {
                 ..common
             }
         }
-        LightKind::Directional { direction } => LightRecord { kind: DIRECTIONAL, position: turn(-direction), ..common },
+        LightKind::Directional { direction } => LightRecord { position: turn(-direction), placed: 0.0, ..common },
     }
 }
 
 fn per_range(range: f64) -> f32 {
     // A range of 0 reaches nothing, and must not become 0 * infinity in the shader.
     (1.0 / range).min(1e30) as f32
+}
+
+/// Whether `light` reaches anything within `bounds` (world space).
+pub fn reaches(light: &Light, bounds: &Bounds) -> bool {
+    match light.kind {
+        LightKind::Point { position, range } | LightKind::Spot { position, range, .. } => {
+            bounds.distance_squared(position) <= range * range
+        }
+        LightKind::Directional { .. } => true,
+    }
 }
 
 /// The name of a light's kind.

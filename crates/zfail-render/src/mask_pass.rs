@@ -1,10 +1,9 @@
 //! The stencil buffer as an image: the verdict within a light's reach, or the count itself.
 
 use crate::frame::FrameData;
-use crate::illuminate_pass::lit;
 use crate::layouts::Layouts;
-use crate::pipeline::{Recipe, cleared, read_only};
-use crate::targets::{Targets, view};
+use crate::pipeline::{ADD, Recipe, cleared, read_only};
+use crate::targets::{Attributes, view};
 use crate::{Gpu, RenderError, read_back, shader};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
@@ -33,24 +32,19 @@ impl MaskPass {
                 program: shader::MASK,
                 entry,
                 constants,
-                groups: &[&layouts.frame, layouts.gbuffer(1)],
+                groups: &[&layouts.frame, &layouts.attributes],
                 targets: &[Some(wgpu::ColorTargetState { format: FORMAT, blend, write_mask: wgpu::ColorWrites::ALL })],
                 depth_stencil: Some(depth_stencil),
                 samples: 1,
             }
             .screen(&gpu.device)
         };
-        let add = wgpu::BlendComponent {
-            src_factor: wgpu::BlendFactor::One,
-            dst_factor: wgpu::BlendFactor::One,
-            operation: wgpu::BlendOperation::Add,
-        };
         let bits = std::array::from_fn(|bit| {
             let face =
                 wgpu::StencilFaceState { compare: wgpu::CompareFunction::NotEqual, ..wgpu::StencilFaceState::IGNORE };
             let stencil = wgpu::StencilState { front: face, back: face, read_mask: 1 << bit, write_mask: 0 };
             let state = wgpu::DepthStencilState { stencil, ..lit(gpu) };
-            create("counted", &[("BIT", f64::from(1 << bit))], state, Some(wgpu::BlendState { color: add, alpha: add }))
+            create("counted", &[("BIT", f64::from(1 << bit))], state, Some(ADD))
         });
         Self { reached: create("reached", &[], lit(gpu), None), bits }
     }
@@ -60,14 +54,14 @@ impl MaskPass {
         &self,
         gpu: &Gpu,
         mut encoder: wgpu::CommandEncoder,
-        targets: &Targets,
+        targets: &Attributes,
         frame: &FrameData,
         light: u32,
         mask: Mask,
     ) -> Result<Vec<u8>, RenderError> {
         let image = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("mask"),
-            size: targets.albedo.size(),
+            size: targets.depth.size(),
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
@@ -83,7 +77,7 @@ impl MaskPass {
             ..Default::default()
         });
         pass.set_bind_group(0, &frame.bind_group, &[]);
-        pass.set_bind_group(1, &targets.gbuffer, &[]);
+        pass.set_bind_group(1, &targets.bind_group, &[]);
         pass.set_stencil_reference(0);
         let pipelines = match mask {
             Mask::Reached => std::slice::from_ref(&self.reached),
@@ -96,5 +90,16 @@ impl MaskPass {
         drop(pass);
         gpu.queue.submit([encoder.finish()]);
         read_back::texture(gpu, &image)
+    }
+}
+
+/// Depth-stencil state of a screen pass that goes through where the stencil says lit.
+fn lit(gpu: &Gpu) -> wgpu::DepthStencilState {
+    wgpu::DepthStencilState {
+        format: gpu.depth_stencil,
+        depth_write_enabled: Some(false),
+        depth_compare: Some(wgpu::CompareFunction::Always),
+        stencil: zfail::lit_stencil(),
+        bias: wgpu::DepthBiasState::default(),
     }
 }

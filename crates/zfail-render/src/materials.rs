@@ -1,6 +1,7 @@
 //! Materials on the device: a uniform and five textures each.
 
 use crate::Gpu;
+use crate::draw_list::material_slots;
 use crate::gpu_data::{MaterialUniform, SlotUniform};
 use crate::layouts::{Layouts, bind};
 use crate::textures::Textures;
@@ -14,13 +15,7 @@ pub fn upload(gpu: &Gpu, layouts: &Layouts, scene: &Scene) -> Vec<wgpu::BindGrou
 }
 
 fn bind_group(gpu: &Gpu, layouts: &Layouts, textures: &mut Textures<'_>, material: &Material) -> wgpu::BindGroup {
-    let slots = [
-        (material.base_color_texture, true),
-        (material.metallic_roughness_texture, false),
-        (material.normal_texture, false),
-        (material.occlusion_texture, false),
-        (material.emissive_texture, true),
-    ];
+    let slots = material_slots(material);
     let uniform = MaterialUniform {
         base_color: material.base_color,
         emissive: material.emissive,
@@ -29,10 +24,7 @@ fn bind_group(gpu: &Gpu, layouts: &Layouts, textures: &mut Textures<'_>, materia
         roughness: material.roughness,
         normal_scale: material.normal_scale,
         occlusion_strength: material.occlusion_strength,
-        textured: (0..).zip(&slots).map(|(bit, (slot, _))| u32::from(slot.is_some()) << bit).sum(),
-        unlit: u32::from(material.unlit),
-        pad: [0; 2],
-        slots: slots.map(|(slot, _)| slot_uniform(slot)),
+        slots: slots.map(slot_uniform),
     };
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(&material.name),
@@ -41,7 +33,9 @@ fn bind_group(gpu: &Gpu, layouts: &Layouts, textures: &mut Textures<'_>, materia
         mapped_at_creation: false,
     });
     gpu.queue.write_buffer(&buffer, 0, bytemuck::bytes_of(&uniform));
-    let bindings = slots.map(|(slot, srgb)| textures.get(slot, srgb));
+    // Base colour and emission are colours.
+    let srgb = [true, false, false, false, true];
+    let bindings: Vec<_> = slots.into_iter().zip(srgb).map(|(slot, srgb)| textures.get(slot, srgb)).collect();
     let mut resources = vec![buffer.as_entire_binding()];
     for (view, sampler) in &bindings {
         resources.push(wgpu::BindingResource::TextureView(view));

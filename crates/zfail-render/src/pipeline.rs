@@ -1,7 +1,6 @@
 //! Pipeline creation: what all of this crate's render pipelines have in common.
 
-use crate::draw_list::DrawState;
-use crate::geometry::VERTEX_BUFFERS;
+use crate::geometry::Vertices;
 use crate::shader::Program;
 
 /// What differs between render pipelines.
@@ -23,12 +22,18 @@ impl Recipe<'_> {
         self.create(device, "cover", &[], wgpu::PrimitiveState::default())
     }
 
-    /// A pipeline over the scene's triangles, with `place` as its vertex stage; culls `cull` as seen after `state`'s
-    /// mirroring is undone.
-    pub fn scene(&self, device: &wgpu::Device, state: DrawState, cull: Option<wgpu::Face>) -> wgpu::RenderPipeline {
-        let front_face = if state.mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw };
+    /// A pipeline over the scene's triangles, with `place` as its vertex stage; culls `cull` as seen after a mirroring
+    /// is undone.
+    pub fn scene(
+        &self,
+        device: &wgpu::Device,
+        vertices: Vertices,
+        mirrored: bool,
+        cull: Option<wgpu::Face>,
+    ) -> wgpu::RenderPipeline {
+        let front_face = if mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw };
         let primitive = wgpu::PrimitiveState { front_face, cull_mode: cull, ..Default::default() };
-        self.create(device, "place", &VERTEX_BUFFERS, primitive)
+        self.create(device, "place", vertices.buffers(), primitive)
     }
 
     fn create(
@@ -69,6 +74,36 @@ impl Recipe<'_> {
             multiview_mask: None,
             cache: None,
         })
+    }
+}
+
+/// Depth-stencil state of surfaces that are drawn where `compare` holds.
+pub fn depth_test(format: wgpu::TextureFormat, compare: wgpu::CompareFunction, write: bool) -> wgpu::DepthStencilState {
+    wgpu::DepthStencilState {
+        format,
+        depth_write_enabled: Some(write),
+        depth_compare: Some(compare),
+        stencil: wgpu::StencilState::default(),
+        bias: wgpu::DepthBiasState::default(),
+    }
+}
+
+/// Adds to what the target holds.
+pub const ADD: wgpu::BlendState = {
+    let add = wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::One,
+        dst_factor: wgpu::BlendFactor::One,
+        operation: wgpu::BlendOperation::Add,
+    };
+    wgpu::BlendState { color: add, alpha: add }
+};
+
+/// A depth-stencil attachment that starts empty: infinitely far, and lit.
+pub fn cleared_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    wgpu::RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
+        stencil_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0), store: wgpu::StoreOp::Store }),
     }
 }
 

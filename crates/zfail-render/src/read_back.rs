@@ -1,4 +1,4 @@
-//! From textures and buffers on the device to bytes.
+//! From textures on the device to bytes.
 
 use crate::{Gpu, RenderError};
 
@@ -35,17 +35,6 @@ pub fn texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, RenderErro
     Ok(texels)
 }
 
-/// The contents of `source`, a multiple of 4 bytes.
-pub fn buffer(gpu: &Gpu, source: &wgpu::Buffer) -> Result<Vec<u8>, RenderError> {
-    let staging = staging(gpu, source.size());
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    encoder.copy_buffer_to_buffer(source, 0, &staging, 0, source.size());
-    gpu.queue.submit([encoder.finish()]);
-    let mut contents = Vec::new();
-    map(gpu, &staging, |bytes| contents.extend_from_slice(bytes))?;
-    Ok(contents)
-}
-
 fn staging(gpu: &Gpu, size: u64) -> wgpu::Buffer {
     gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("read-back"),
@@ -56,7 +45,7 @@ fn staging(gpu: &Gpu, size: u64) -> wgpu::Buffer {
 }
 
 /// Waits for the device, then shows the contents of `staging` to `read`.
-fn map(gpu: &Gpu, staging: &wgpu::Buffer, read: impl FnOnce(&[u8])) -> Result<(), RenderError> {
+pub fn map(gpu: &Gpu, staging: &wgpu::Buffer, read: impl FnOnce(&[u8])) -> Result<(), RenderError> {
     // An earlier failure explains more than a failed mapping.
     gpu.check()?;
     let (sender, receiver) = std::sync::mpsc::channel();

@@ -1,23 +1,26 @@
-//! The order of passes: ambient; for every light shadow and illumination; final; exposure and tone mapping
-//! (McGuire et al. 2003, section 8).
+//! The order of passes: verdicts of all lights; forward shading; exposure and tone mapping where the forward pass could
+//! not do it (McGuire et al. 2003, section 8).
 
-use crate::ambient_pass::AmbientPass;
+use crate::attribute_pass::AttributePass;
 use crate::develop_pass::DevelopPass;
 use crate::exposure::ExposureMeter;
-use crate::final_pass::FinalPass;
-use crate::frame::FrameData;
+use crate::forward_pass::{Attachments, ForwardPass, Step};
+use crate::frame::{FrameData, Shading};
 use crate::gpu_data::LightRecord;
-use crate::illuminate_pass::IlluminatePass;
 use crate::layouts::Layouts;
 use crate::mask_pass::{Mask, MaskPass};
+use crate::pipeline::{cleared, cleared_depth, continued, read_only};
 use crate::scene::SceneOnGpu;
 use crate::shadow_pass::ShadowPass;
 use crate::stats::{FrameStats, LightFigures};
-use crate::targets::Targets;
-use crate::timing::{PassTimes, Timer};
-use crate::{AovKind, Aovs, Gpu, Picture, RenderError, Settings, lights, read_back, surface_outputs};
+use crate::targets::{Attributes, Targets};
+use crate::timing::Timer;
+use crate::tone_map::tone_map;
+use crate::verdict_pass::{self, Verdict, VerdictPass};
+use crate::{AovKind, Aovs, Exposure, Gpu, Picture, RenderError, Settings, attribute_outputs, lights, read_back};
 use half::f16;
 use std::collections::HashMap;
+use std::ops::Range;
 use std::time::Instant;
 use zfail::{Counting, LightStats};
 use zfail_plan::scene::{Pose, Scene};
@@ -29,22 +32,33 @@ pub struct Renderer<'g> {
     gpu: &'g Gpu,
     layouts: Layouts,
     scene: SceneOnGpu,
-    /// By sample count.
-    passes: HashMap<u32, Passes>,
-    mask: Option<MaskPass>,
-    targets: Option<Targets>,
     frame: FrameData,
+    forward: ForwardPass,
+    /// By sample count.
+    verdicts: HashMap<u32, VerdictPass>,
+    /// By sample count.
+    darkroom: HashMap<u32, (ExposureMeter, DevelopPass)>,
+    targets: Option<Targets>,
+    timer: Timer,
+    measured: Option<Measured>,
 }
 
-/// Everything that depends on the sample count alone.
+/// What measured outputs need.
 #[derive(Debug)]
-struct Passes {
-    ambient: AmbientPass,
+struct Measured {
+    attributes: AttributePass,
     shadow: ShadowPass,
-    illuminate: IlluminatePass,
-    last: FinalPass,
-    meter: ExposureMeter,
-    develop: DevelopPass,
+    mask: MaskPass,
+    targets: Attributes,
+}
+
+/// How a picture is finished.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Finish {
+    /// By the forward pass itself.
+    Forward,
+    /// From radiance.
+    Darkroom,
 }
 
 impl<'g> Renderer<'g> {
@@ -54,9 +68,18 @@ impl<'g> Renderer<'g> {
     /// If the scene is inconsistent or the device runs out of memory.
     pub fn new(gpu: &'g Gpu, scene: &Scene) -> Result<Self, RenderError> {
         let layouts = Layouts::new(&gpu.device);
-        let scene = SceneOnGpu::new(gpu, &layouts, scene)?;
-        let frame = FrameData::new(gpu, &layouts, scene.instances.len(), scene.lights.len())?;
-        Ok(Self { gpu, layouts, scene, passes: HashMap::new(), mask: None, targets: None, frame })
+        Ok(Self {
+            gpu,
+            scene: SceneOnGpu::new(gpu, &layouts, scene)?,
+            frame: FrameData::new(gpu, &layouts),
+            layouts,
+            forward: ForwardPass::default(),
+            verdicts: HashMap::new(),
+            darkroom: HashMap::new(),
+            targets: None,
+            timer: Timer::default(),
+            measured: None,
+        })
     }
 
     /// Moves the scene's instances and lights; meshes, materials and everything derived from them stay on the device.
@@ -68,81 +91,176 @@ impl<'g> Renderer<'g> {
         self.scene.pose(pose)
     }
 
-    /// Renders one picture: a frame as of [`Renderer::render`], read back.
+    /// Renders one picture and reads it back.
     ///
     /// # Errors
     /// As for [`Renderer::render`].
     pub fn picture(&mut self, view: &View, settings: &Settings) -> Result<(Picture, FrameStats), RenderError> {
-        let stats = self.render(view, settings)?;
-        let targets = self.targets.as_ref().ok_or_else(no_targets)?;
-        Ok((develop(self.gpu, targets)?, stats))
+        let stats = self.draw(view, settings, Finish::Darkroom)?;
+        let targets = self.targets.as_mut().ok_or_else(no_targets)?;
+        let texels: Vec<[u16; 4]> =
+            bytemuck::pod_collect_to_vec(&read_back::texture(self.gpu, &targets.hdr(self.gpu).texture)?);
+        let hdr = texels.iter().map(|&[r, g, b, _]| [r, g, b].map(|c| f16::from_bits(c).to_f32())).collect();
+        let rgba8 = read_back::texture(self.gpu, &targets.ldr)?;
+        Ok((Picture { size: targets.size, hdr, rgba8 }, stats))
     }
 
-    /// Renders one frame and waits for the device, but leaves the picture there.
+    /// Renders one frame and waits for the device, but leaves the picture there. With an [`Exposure::Ev`] and without
+    /// blended materials this is cheaper than [`Renderer::picture`] by more than the read-back: no radiance is kept.
     ///
     /// # Errors
     /// If the settings do not fit the scene or the device, or the device fails.
     pub fn render(&mut self, view: &View, settings: &Settings) -> Result<FrameStats, RenderError> {
+        let known = matches!(settings.exposure, Exposure::Ev(_));
+        let finish = if known && !self.scene.draws.blends { Finish::Forward } else { Finish::Darkroom };
+        self.draw(view, settings, finish)
+    }
+
+    fn draw(&mut self, view: &View, settings: &Settings, finish: Finish) -> Result<FrameStats, RenderError> {
+        let gpu = self.gpu;
         let samples = settings.samples;
         if !matches!(samples, 1 | 4) {
             return Err(RenderError::Samples(samples));
         }
         // wgpu attaches multisampled textures on GL in a way that only render-to-texture extensions know.
-        if samples > 1 && self.gpu.info.backend == wgpu::Backend::Gl {
-            return Err(RenderError::NoMultisampling { backend: self.gpu.info.backend });
+        if samples > 1 && gpu.info.backend == wgpu::Backend::Gl {
+            return Err(RenderError::NoMultisampling { backend: gpu.info.backend });
         }
         let chosen = self.scene.chosen(settings)?;
-        let targets = reuse(&mut self.targets, self.gpu, &self.layouts, view.size, samples)?;
+        if self.targets.as_ref().is_none_or(|t| t.size != view.size || t.samples != samples) {
+            // The old ones go first: both together may be more than there is memory.
+            self.targets = None;
+            self.targets = Some(Targets::new(gpu, view.size, samples)?);
+        }
 
         let start = Instant::now();
         let figures = if settings.shadows {
-            self.scene.plan(self.gpu, view, &chosen, settings, Counting::Verdict)?
+            self.scene.plan(gpu, view, &chosen, settings, Counting::Verdict)?
         } else {
             vec![unplanned(view); chosen.len()]
         };
         let planning_ms = start.elapsed().as_secs_f64() * 1e3;
 
-        let pre_exposure = update_frame(&mut self.frame, self.gpu, &self.layouts, &self.scene, view, &chosen)?;
-        let frame = &self.frame;
-        let passes =
-            self.passes.entry(samples).or_insert_with(|| Passes::new(self.gpu, &self.layouts, &self.scene, samples));
-        let order = PassOrder { lights: chosen.len(), shadows: settings.shadows };
-        let timer = Timer::new(self.gpu, order.count());
-        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let background = self.scene.background.map(|c| half_float(c * pre_exposure));
-        passes.ambient.encode(&mut encoder, targets, frame, &self.scene, background, timer.pass(0));
-        for (i, figures) in figures.iter().enumerate() {
-            if let Some(pass) = order.shadow(i) {
-                passes.shadow.encode(&mut encoder, targets, &self.scene.shadows, i, timer.pass(pass));
-            }
-            let time = timer.pass(order.illuminate(i));
-            passes.illuminate.encode(&mut encoder, targets, frame, i as u32, figures.scissor, time);
+        self.scene.arrange(view);
+        let exposed = Exposed::new(&self.scene, &chosen, settings.exposure, view);
+        let parts = parts(chosen.len(), settings.shadows, self.scene.draws.blends);
+        let finish = if parts.len() > 1 { Finish::Darkroom } else { finish };
+        let spans = Spans {
+            shadows: settings.shadows,
+            darkroom: finish == Finish::Darkroom,
+            lights: if gpu.timestamps_inside { chosen.len() } else { 0 },
+        };
+        // Several steps would write the same queries.
+        self.timer.begin(gpu, if parts.len() > 1 { 0 } else { spans.count() });
+        for (number, part) in parts.iter().enumerate() {
+            self.step(view, &chosen, &figures, &exposed, part, number > 0, finish, spans, samples)?;
         }
-        passes.last.encode(&mut encoder, targets, frame, &self.scene, timer.pass(order.last()));
-        passes.meter.encode(self.gpu, &mut encoder, targets, settings.exposure, pre_exposure);
-        let exposure = &passes.meter.exposure;
-        passes.develop.encode(self.gpu, &mut encoder, targets, exposure, timer.pass(order.develop()));
-        timer.resolve(&mut encoder);
-        self.gpu.queue.submit([encoder.finish()]);
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        if finish == Finish::Darkroom {
+            let targets = self.targets.as_mut().ok_or_else(no_targets)?;
+            let (meter, develop) = self
+                .darkroom
+                .entry(samples)
+                .or_insert_with(|| (ExposureMeter::new(gpu, samples), DevelopPass::new(gpu, samples)));
+            let ldr = targets.ldr_view.clone();
+            let hdr = targets.hdr(gpu);
+            meter.encode(gpu, &mut encoder, &hdr.samples, view.size, settings.exposure, exposed.pre_exposure);
+            develop.encode(gpu, &mut encoder, hdr, &ldr, &meter.exposure, self.timer.pass(spans.develop()));
+        }
+        self.timer.resolve(&mut encoder);
+        gpu.queue.submit([encoder.finish()]);
+        let times = self.timer.read(gpu)?;
 
-        self.gpu.wait()?;
-        let times = timer.read(self.gpu)?;
-        let lights = chosen
-            .iter()
-            .zip(figures)
-            .enumerate()
-            .map(|(i, (&l, figures))| {
-                light_figures(lights::kind_name(&self.scene.lights[l].kind), figures, &times, &order, i)
-            })
-            .collect();
+        let shading_ms = times.pass_ms(spans.forward());
+        let lights = chosen.iter().zip(figures).enumerate().map(|(i, (&l, figures))| {
+            let kind = lights::kind_name(&self.scene.lights[l].kind);
+            let shadow_ms = spans.light(i).and_then(|span| times.pass_ms(span));
+            figures_of(kind, figures, shadow_ms, shading_ms.filter(|_| chosen.len() == 1))
+        });
         Ok(FrameStats {
-            adapter: self.gpu.info.name.clone(),
-            backend: self.gpu.info.backend.to_string(),
-            depth_format: format!("{:?}", self.gpu.depth_stencil),
+            adapter: gpu.info.name.clone(),
+            backend: gpu.info.backend.to_string(),
+            depth_format: format!("{:?}", gpu.depth_stencil),
             planning_ms,
             gpu_ms: times.total_ms(),
-            lights,
+            shading_ms,
+            lights: lights.collect(),
         })
+    }
+
+    /// Submits one step of a frame.
+    #[expect(clippy::too_many_arguments, reason = "what differs between the steps of one frame")]
+    fn step(
+        &mut self,
+        view: &View,
+        chosen: &[usize],
+        figures: &[LightStats],
+        exposed: &Exposed,
+        part: &Part,
+        added: bool,
+        finish: Finish,
+        spans: Spans,
+        samples: u32,
+    ) -> Result<(), RenderError> {
+        let gpu = self.gpu;
+        let (scene, layouts, timer) = (&self.scene, &self.layouts, &self.timer);
+        let range = part.lights.clone();
+        let records = &exposed.lights[range.clone()];
+        let shading = Shading { lights: records, ..exposed.shading() };
+        let lights = &chosen[range.clone()];
+        self.frame.update(
+            gpu,
+            layouts,
+            view,
+            &shading,
+            scene.draws.order.iter().map(|&i| &scene.instances[i].world_from_object),
+            |l, slot| lights::reaches(&scene.lights[lights[l]], &scene.instance_bounds[scene.draws.order[slot]]),
+        )?;
+        let targets = self.targets.as_mut().ok_or_else(no_targets)?;
+        let shadowed = spans.shadows && part.solid;
+        let step = Step::new(samples, finish == Finish::Forward, records.len(), shadowed, added && part.solid);
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let depth_stencil = targets.depth_stencil.clone();
+        if shadowed {
+            let shadows = &scene.shadows;
+            let pass = self.verdicts.entry(samples).or_insert_with(|| VerdictPass::new(gpu, shadows, samples));
+            pass.prepare(gpu, layouts, scene);
+            let verdicts = range.map(|light| Verdict {
+                light,
+                scissor: Some(figures[light].scissor).filter(|_| figures[light].vertices > 0),
+                span: spans.light(light),
+            });
+            let verdict_view = &targets.verdicts(gpu, layouts).view;
+            pass.encode(&mut encoder, verdict_view, &depth_stencil, &self.frame, scene, verdicts, (timer, Some(0)));
+        }
+
+        let solid = scene.draws.solid.iter().filter(|_| part.solid);
+        let draws = solid.chain(scene.draws.blended.iter().filter(|_| part.blended));
+        self.forward.prepare(gpu, layouts, scene, step, draws.clone());
+        let verdicts = shadowed.then(|| targets.verdicts(gpu, layouts).bind_group.clone());
+        let color = match finish {
+            Finish::Forward => {
+                let (view, resolve_target) = targets.picture(gpu);
+                let [r, g, b] = tone_map(exposed.background.map(|c| c * exposed.exposure)).map(f64::from);
+                cleared(view, [r, g, b, 1.0]).map(|color| wgpu::RenderPassColorAttachment { resolve_target, ..color })
+            }
+            Finish::Darkroom if added => continued(&targets.hdr(gpu).samples),
+            Finish::Darkroom => {
+                // A negative share to be shown as it is marks what is no surface.
+                let [r, g, b] = exposed.background.map(half_float).map(f64::from);
+                cleared(&targets.hdr(gpu).samples, [r, g, b, -1.0])
+            }
+        };
+        gpu.check()?;
+        let attachments = Attachments {
+            color: color.ok_or_else(no_targets)?,
+            depth_stencil: if shadowed || added { read_only(&depth_stencil) } else { cleared_depth(&depth_stencil) },
+            verdicts: verdicts.as_ref(),
+            timestamp_writes: timer.pass(spans.forward()),
+        };
+        self.forward.encode(&mut encoder, attachments, &self.frame, scene, step, draws);
+        gpu.queue.submit([encoder.finish()]);
+        Ok(())
     }
 
     /// Renders the outputs of `kinds`, always at one sample per pixel.
@@ -150,19 +268,32 @@ impl<'g> Renderer<'g> {
     /// # Errors
     /// As for [`Renderer::picture`].
     pub fn aovs(&mut self, view: &View, settings: &Settings, kinds: &[AovKind]) -> Result<Aovs, RenderError> {
+        let gpu = self.gpu;
         let chosen = self.scene.chosen(settings)?;
-        let targets = reuse(&mut self.targets, self.gpu, &self.layouts, view.size, 1)?;
-        update_frame(&mut self.frame, self.gpu, &self.layouts, &self.scene, view, &chosen)?;
-        let frame = &self.frame;
-        let passes = self.passes.entry(1).or_insert_with(|| Passes::new(self.gpu, &self.layouts, &self.scene, 1));
-        let mask = self.mask.get_or_insert_with(|| MaskPass::new(self.gpu, &self.layouts));
-        let encoder = || self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        if self.measured.as_ref().is_none_or(|m| m.targets.size != view.size) {
+            self.measured = None;
+            self.measured = Some(Measured {
+                attributes: AttributePass::default(),
+                shadow: ShadowPass::new(gpu, &self.scene.shadows),
+                mask: MaskPass::new(gpu, &self.layouts),
+                targets: Attributes::new(gpu, &self.layouts, view.size)?,
+            });
+            gpu.check()?;
+        }
+        let Some(Measured { attributes, shadow, mask, targets }) = &mut self.measured else {
+            return Err(no_targets());
+        };
+        self.scene.arrange(view);
+        let exposed = Exposed::new(&self.scene, &chosen, settings.exposure, view);
+        let placements = self.scene.draws.order.iter().map(|&i| &self.scene.instances[i].world_from_object);
+        self.frame.update(gpu, &self.layouts, view, &exposed.shading(), placements, |_, _| true)?;
+        let encoder = || gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
 
         let mut first = encoder();
-        passes.ambient.encode(&mut first, targets, frame, &self.scene, [0.0; 3], None);
-        self.gpu.queue.submit([first.finish()]);
+        attributes.encode(gpu, &self.layouts, &mut first, targets, &self.frame, &self.scene);
+        gpu.queue.submit([first.finish()]);
         let mut out = Aovs { size: view.size, ..Aovs::default() };
-        surface_outputs::fill(&mut out, self.gpu, targets, view, kinds)?;
+        attribute_outputs::fill(&mut out, gpu, targets, view, kinds)?;
 
         for (kind, counting, what, images) in [
             (AovKind::Shadow, Counting::Verdict, Mask::Reached, &mut out.shadow),
@@ -172,103 +303,108 @@ impl<'g> Renderer<'g> {
                 continue;
             }
             if settings.shadows {
-                self.scene.plan(self.gpu, view, &chosen, settings, counting)?;
+                self.scene.plan(gpu, view, &chosen, settings, counting)?;
             }
             for light in 0..chosen.len() {
                 let mut encoder = encoder();
                 if settings.shadows {
-                    passes.shadow.encode(&mut encoder, targets, &self.scene.shadows, light, None);
+                    shadow.encode(&mut encoder, targets, &self.scene.shadows, light);
                 }
-                images.push(mask.read(self.gpu, encoder, targets, frame, light as u32, what)?);
+                images.push(mask.read(gpu, encoder, targets, &self.frame, light as u32, what)?);
             }
         }
         Ok(out)
     }
 }
 
-impl Passes {
-    fn new(gpu: &Gpu, layouts: &Layouts, scene: &SceneOnGpu, samples: u32) -> Self {
+/// Part of a frame. One is enough unless there are more lights than a texel of verdicts has bits.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Part {
+    /// Of the frame's lights.
+    lights: Range<usize>,
+    /// Draws solid surfaces.
+    solid: bool,
+    /// Draws blended surfaces, which are lit by all lights at once.
+    blended: bool,
+}
+
+/// The parts of a frame in order.
+fn parts(lights: usize, shadows: bool, blends: bool) -> Vec<Part> {
+    if !shadows || lights <= verdict_pass::LIGHTS {
+        return vec![Part { lights: 0..lights, solid: true, blended: blends }];
+    }
+    let starts = (0..lights).step_by(verdict_pass::LIGHTS);
+    let solid = starts.map(|start| {
+        let lights = start..lights.min(start + verdict_pass::LIGHTS);
+        Part { lights, solid: true, blended: false }
+    });
+    let blended = Part { lights: 0..lights, solid: false, blended: true };
+    solid.chain(blends.then_some(blended)).collect()
+}
+
+/// Light of a frame, scaled to the range of half floats.
+#[derive(Debug)]
+struct Exposed {
+    lights: Vec<LightRecord>,
+    ambient: [f32; 3],
+    background: [f32; 3],
+    pre_exposure: f32,
+    /// From pre-exposed radiance to the picture's; meaningless where it is measured.
+    exposure: f32,
+}
+
+impl Exposed {
+    fn new(scene: &SceneOnGpu, chosen: &[usize], exposure: Exposure, view: &View) -> Self {
+        let lit = chosen.iter().map(|&l| &scene.lights[l]);
+        let constant = [scene.ambient, scene.background, scene.emission];
+        let pre_exposure = lights::pre_exposure(lit.clone(), &scene.bounds, &constant);
         Self {
-            ambient: AmbientPass::new(gpu, layouts, samples, &scene.draws),
-            shadow: ShadowPass::new(gpu, &scene.shadows, samples),
-            illuminate: IlluminatePass::new(gpu, layouts, samples),
-            last: FinalPass::new(gpu, layouts, samples, &scene.draws),
-            meter: ExposureMeter::new(gpu, samples),
-            develop: DevelopPass::new(gpu, samples),
+            lights: lit.map(|light| lights::record(light, view, pre_exposure)).collect(),
+            ambient: scene.ambient.map(|c| c * pre_exposure),
+            background: scene.background.map(|c| c * pre_exposure),
+            pre_exposure,
+            exposure: match exposure {
+                Exposure::Auto => 1.0,
+                Exposure::Ev(stops) => (stops.exp2() / pre_exposure).clamp(0.0, f32::MAX),
+            },
         }
     }
+
+    fn shading(&self) -> Shading<'_> {
+        let Self { lights, ambient, pre_exposure, exposure, .. } = self;
+        Shading { lights, ambient: *ambient, pre_exposure: *pre_exposure, exposure: *exposure }
+    }
 }
 
-/// Numbers the passes of a frame in the order of their encoding.
-struct PassOrder {
-    lights: usize,
+/// Numbers what is timed: verdicts, forward, develop, then each light's volumes.
+#[derive(Clone, Copy, Debug)]
+struct Spans {
     shadows: bool,
+    darkroom: bool,
+    /// Lights that are timed.
+    lights: usize,
 }
 
-impl PassOrder {
-    fn shadow(&self, light: usize) -> Option<usize> {
-        self.shadows.then_some(1 + 2 * light)
+impl Spans {
+    fn forward(self) -> usize {
+        usize::from(self.shadows)
     }
 
-    fn illuminate(&self, light: usize) -> usize {
-        if self.shadows { 2 + 2 * light } else { 1 + light }
+    fn develop(self) -> usize {
+        self.forward() + 1
     }
 
-    fn last(&self) -> usize {
-        self.illuminate(self.lights) - usize::from(self.shadows)
+    fn light(self, light: usize) -> Option<usize> {
+        (self.shadows && light < self.lights).then_some(self.develop() + usize::from(self.darkroom) + light)
     }
 
-    fn develop(&self) -> usize {
-        self.last() + 1
+    fn count(self) -> usize {
+        self.develop() + usize::from(self.darkroom) + if self.shadows { self.lights } else { 0 }
     }
-
-    fn count(&self) -> usize {
-        self.develop() + 1
-    }
-}
-
-/// The targets of the last frame if they fit, or new ones.
-fn reuse<'t>(
-    kept: &'t mut Option<Targets>,
-    gpu: &Gpu,
-    layouts: &Layouts,
-    size: [u32; 2],
-    samples: u32,
-) -> Result<&'t Targets, RenderError> {
-    if kept.as_ref().is_none_or(|t| t.size != size || t.samples != samples) {
-        // The old ones go first: both together may be more than there is memory.
-        *kept = None;
-        let targets = Targets::new(gpu, layouts, size, samples)?;
-        gpu.check()?;
-        *kept = Some(targets);
-    }
-    kept.as_ref().ok_or_else(no_targets)
 }
 
 fn no_targets() -> RenderError {
     RenderError::Device("no render targets".to_owned())
-}
-
-/// Uploads view, lights and instances; returns the frame's pre-exposure.
-fn update_frame(
-    frame: &mut FrameData,
-    gpu: &Gpu,
-    layouts: &Layouts,
-    scene: &SceneOnGpu,
-    view: &View,
-    chosen: &[usize],
-) -> Result<f32, RenderError> {
-    let lit = chosen.iter().map(|&l| &scene.lights[l]);
-    let pre_exposure =
-        lights::pre_exposure(lit.clone(), &scene.bounds, &[scene.ambient, scene.background, scene.emission]);
-    let records: Vec<LightRecord> = lit.map(|light| lights::record(light, view, pre_exposure)).collect();
-    let ambient = scene.ambient.map(|c| c * pre_exposure);
-    if !frame.holds(records.len()) {
-        // A light may be chosen more than once.
-        *frame = FrameData::new(gpu, layouts, scene.instances.len(), records.len())?;
-    }
-    frame.update(gpu, view, &scene.instances, &records, ambient, pre_exposure);
-    Ok(pre_exposure)
 }
 
 /// The nearest finite half float that is not negative.
@@ -281,13 +417,7 @@ fn unplanned(view: &View) -> LightStats {
     LightStats { scissor: [0, 0, view.size[0], view.size[1]], ..LightStats::default() }
 }
 
-fn light_figures(
-    kind: &'static str,
-    figures: LightStats,
-    times: &PassTimes,
-    order: &PassOrder,
-    light: usize,
-) -> LightFigures {
+fn figures_of(kind: &'static str, figures: LightStats, shadow_ms: Option<f64>, light_ms: Option<f64>) -> LightFigures {
     LightFigures {
         kind,
         casters: figures.casters,
@@ -301,14 +431,7 @@ fn light_figures(
         vertices: figures.vertices,
         fragments: None,
         scissor: figures.scissor,
-        shadow_ms: order.shadow(light).and_then(|pass| times.pass_ms(pass)),
-        light_ms: times.pass_ms(order.illuminate(light)),
+        shadow_ms,
+        light_ms,
     }
-}
-
-/// Reads the finished picture.
-fn develop(gpu: &Gpu, targets: &Targets) -> Result<Picture, RenderError> {
-    let texels: Vec<[u16; 4]> = bytemuck::pod_collect_to_vec(&read_back::texture(gpu, &targets.hdr)?);
-    let hdr = texels.iter().map(|&[r, g, b, _]| [r, g, b].map(|c| f16::from_bits(c).to_f32())).collect();
-    Ok(Picture { size: targets.size, hdr, rgba8: read_back::texture(gpu, &targets.ldr)? })
 }

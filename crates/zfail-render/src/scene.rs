@@ -19,6 +19,8 @@ pub struct SceneOnGpu {
     pub instances: Vec<Instance>,
     pub lights: Vec<Light>,
     pub bounds: Bounds,
+    /// Of every instance, world space.
+    pub instance_bounds: Vec<Bounds>,
     /// Of every mesh, object space.
     mesh_bounds: Vec<Bounds>,
     pub ambient: [f32; 3],
@@ -66,13 +68,14 @@ impl SceneOnGpu {
             .materials
             .iter()
             .fold([0.0; 3], |greatest, m| std::array::from_fn(|c| f32::max(greatest[c], m.emissive[c])));
-        let on_gpu = Self {
+        let mut on_gpu = Self {
             meshes,
             materials: materials::upload(gpu, layouts, scene),
             draws: DrawList::new(scene),
             instances: scene.instances.clone(),
             lights: scene.lights.clone(),
-            bounds: scene.bounds(),
+            bounds: Bounds::EMPTY,
+            instance_bounds: Vec::new(),
             mesh_bounds: scene.meshes.iter().map(Mesh::bounds).collect(),
             ambient: scene.ambient,
             background: scene.background,
@@ -81,6 +84,7 @@ impl SceneOnGpu {
             casters,
             caster_of,
         };
+        on_gpu.bound();
         gpu.check()?;
         Ok(on_gpu)
     }
@@ -99,6 +103,13 @@ impl SceneOnGpu {
         for (light, &kind) in self.lights.iter_mut().zip(&pose.lights) {
             light.kind = kind;
         }
+        self.bound();
+        Ok(())
+    }
+
+    /// Derives all bounds in world space.
+    fn bound(&mut self) {
+        self.instance_bounds.clear();
         self.bounds = Bounds::EMPTY;
         for instance in &self.instances {
             let world = self.mesh_bounds[instance.mesh].transformed(&instance.world_from_object);
@@ -106,9 +117,14 @@ impl SceneOnGpu {
                 self.bounds.add(world.min);
                 self.bounds.add(world.max);
             }
+            self.instance_bounds.push(world);
         }
-        self.draws.pose(&self.instances);
-        Ok(())
+    }
+
+    /// Orders what is drawn for `view`.
+    pub fn arrange(&mut self, view: &View) {
+        let bounds = &self.instance_bounds;
+        self.draws.arrange(view, &self.instances, |i| bounds[i].center());
     }
 
     /// The lights that `settings` choose, as indices into [`Self::lights`].

@@ -1,5 +1,7 @@
 //! The shader programs: each is a few WGSL files, one after the other.
 
+use crate::geometry::Vertices;
+
 /// A shader module's name and text.
 #[derive(Clone, Copy, Debug)]
 pub struct Program {
@@ -13,22 +15,40 @@ macro_rules! program {
     };
 }
 
-pub const AMBIENT: Program = program!("ambient", "limits", "frame", "octahedral", "surface", "ambient");
-pub const FINAL: Program = program!("final", "limits", "frame", "light", "surface", "final");
-pub const MASK: Program = program!("mask", "limits", "frame", "light", "gbuffer_single", "screen", "mask");
-const ILLUMINATE: [Program; 2] = [
-    program!("illuminate", "limits", "frame", "octahedral", "light", "gbuffer_single", "screen", "illuminate"),
-    program!("illuminate 4x", "limits", "frame", "octahedral", "light", "gbuffer_multi", "screen", "illuminate"),
-];
-const METER: [Program; 2] =
-    [program!("meter", "limits", "hdr_single", "meter"), program!("meter 4x", "limits", "hdr_multi", "meter")];
+macro_rules! forward {
+    ($vertex:literal) => {
+        [forward!($vertex, "forward_open"), forward!($vertex, "forward_single"), forward!($vertex, "forward_multi")]
+    };
+    ($vertex:literal, $entry:literal) => {
+        program!($entry, "limits", "frame", "light", $vertex, "material", "tone_map", "shade", $entry)
+    };
+}
+
+pub const DEPTH: Program = program!("depth", "depth");
+pub const CUTOUT: Program = program!("cutout", "frame", "vertex_textured", "material", "cutout");
+pub const VERDICT: Program = program!("verdict", "screen", "verdict");
+pub const DESCRIBE: Program =
+    program!("describe", "limits", "frame", "octahedral", "vertex_mapped", "material", "describe");
+pub const MASK: Program = program!("mask", "limits", "frame", "reach", "attributes", "screen", "mask");
+const FORWARD: [[Program; 3]; 3] = [forward!("vertex_plain"), forward!("vertex_textured"), forward!("vertex_mapped")];
+const METER: [Program; 2] = [program!("meter", "hdr_single", "meter"), program!("meter 4x", "hdr_multi", "meter")];
 const DEVELOP: [Program; 2] = [
-    program!("develop", "limits", "hdr_single", "screen", "develop"),
-    program!("develop 4x", "limits", "hdr_multi", "screen", "develop"),
+    program!("develop", "hdr_single", "screen", "tone_map", "develop"),
+    program!("develop 4x", "hdr_multi", "screen", "tone_map", "develop"),
 ];
 
-pub fn illuminate(samples: u32) -> Program {
-    ILLUMINATE[usize::from(samples > 1)]
+/// Shading of what `vertices` read; `verdicts` are the samples per pixel of the light verdicts, if there are any.
+pub fn forward(vertices: Vertices, verdicts: Option<u32>) -> Program {
+    let row = match vertices {
+        Vertices::Depth | Vertices::Plain => 0,
+        Vertices::Textured => 1,
+        Vertices::Mapped => 2,
+    };
+    FORWARD[row][match verdicts {
+        None => 0,
+        Some(1) => 1,
+        Some(_) => 2,
+    }]
 }
 
 pub fn meter(samples: u32) -> Program {
@@ -51,11 +71,11 @@ impl Program {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu_data::{FrameUniform, InstanceUniform, LightRecord, MaterialUniform, SlotUniform};
+    use crate::gpu_data::{FrameUniform, LightRecord, MaterialUniform, SlotUniform};
     use naga::valid::{Capabilities, ValidationFlags, Validator};
 
     fn programs() -> Vec<Program> {
-        [&[AMBIENT, FINAL, MASK][..], &ILLUMINATE, &METER, &DEVELOP].concat()
+        [&[DEPTH, CUTOUT, VERDICT, DESCRIBE, MASK][..], FORWARD.as_flattened(), &METER, &DEVELOP].concat()
     }
 
     fn validate(source: &str) -> Result<naga::Module, String> {
@@ -78,7 +98,7 @@ mod tests {
 
     #[test]
     fn validation_finds_mistakes() {
-        assert!(validate(&format!("{}fn wrong() -> f32 {{ return 1u; }}", AMBIENT.source)).is_err());
+        assert!(validate(&format!("{}fn wrong() -> f32 {{ return 1u; }}", DESCRIBE.source)).is_err());
     }
 
     #[test]
@@ -119,41 +139,25 @@ mod tests {
 
     #[test]
     fn structures_agree() {
+        let shade = forward(Vertices::Mapped, Some(1));
         assert_layout!(
-            FINAL,
+            shade,
             "Frame",
             FrameUniform,
-            [view_per_ndc, size, ambient, orthographic, pre_exposure, light_count]
+            [view_per_ndc, size, ambient, orthographic, pre_exposure, exposure, light_count, lights]
         );
+        assert_layout!(shade, "Slot", SlotUniform, [u, v]);
         assert_layout!(
-            FINAL,
-            "Instance",
-            InstanceUniform,
-            [clip_from_object, view_from_object, view_from_object_normal]
-        );
-        assert_layout!(FINAL, "Slot", SlotUniform, [u, v]);
-        assert_layout!(
-            FINAL,
+            shade,
             "Material",
             MaterialUniform,
-            [
-                base_color,
-                emissive,
-                alpha_cutoff,
-                metallic,
-                roughness,
-                normal_scale,
-                occlusion_strength,
-                textured,
-                unlit,
-                slots
-            ]
+            [base_color, emissive, alpha_cutoff, metallic, roughness, normal_scale, occlusion_strength, slots]
         );
         assert_layout!(
-            FINAL,
+            shade,
             "Light",
             LightRecord,
-            [position, kind, axis, per_range, color, sin_outer, cos_outer, angle_scale, angle_offset]
+            [position, placed, axis, per_range, color, sin_outer, cos_outer, angle_scale, angle_offset]
         );
     }
 }

@@ -1,7 +1,7 @@
 //! The stencil verdict of one light: 0 where it shines, by way of the crate `zfail`.
 
 use crate::Gpu;
-use crate::targets::Targets;
+use crate::targets::Attributes;
 
 /// Pipelines of the pass.
 #[derive(Debug)]
@@ -10,8 +10,8 @@ pub struct ShadowPass {
 }
 
 impl ShadowPass {
-    pub fn new(gpu: &Gpu, shadows: &zfail::Shadows, samples: u32) -> Self {
-        let target = zfail::Target { colors: &[], depth_stencil: gpu.depth_stencil, samples };
+    pub fn new(gpu: &Gpu, shadows: &zfail::Shadows) -> Self {
+        let target = zfail::Target { colors: &[], depth_stencil: gpu.depth_stencil, samples: 1 };
         Self { pipelines: shadows.pipelines(&gpu.device, &target) }
     }
 
@@ -19,10 +19,9 @@ impl ShadowPass {
     pub fn encode(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        targets: &Targets,
+        targets: &Attributes,
         shadows: &zfail::Shadows,
         light: usize,
-        timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadow"),
@@ -34,7 +33,6 @@ impl ShadowPass {
                     store: wgpu::StoreOp::Store,
                 }),
             }),
-            timestamp_writes,
             ..Default::default()
         });
         shadows.draw(&mut pass, &self.pipelines, light);

@@ -16,6 +16,8 @@ pub struct FrameStats {
     pub planning_ms: f64,
     /// Time of the whole frame on the GPU, milliseconds.
     pub gpu_ms: Option<f64>,
+    /// GPU time in which visible surfaces were shaded, all lights together, milliseconds.
+    pub shading_ms: Option<f64>,
     /// One entry per rendered light, in the order of [`crate::Settings::lights`].
     pub lights: Vec<LightFigures>,
 }
@@ -39,9 +41,9 @@ pub struct LightFigures {
     pub fragments: Option<u64>,
     /// Pixels that the light can reach: x, y, width, height.
     pub scissor: [u32; 4],
-    /// GPU time of the shadow pass, milliseconds.
+    /// GPU time of its shadow volumes, milliseconds.
     pub shadow_ms: Option<f64>,
-    /// GPU time of the illumination pass, milliseconds.
+    /// GPU time of its illumination, milliseconds; only a frame's single light has one of its own.
     pub light_ms: Option<f64>,
 }
 

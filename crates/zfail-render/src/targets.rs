@@ -3,95 +3,161 @@
 use crate::layouts::{Layouts, bind};
 use crate::{Gpu, RenderError};
 
-/// Base colour; alpha marks unlit surfaces.
-pub const ALBEDO: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
-/// Shading normal, roughness, metalness.
-pub const SURFACE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// Geometric normal.
-pub const GEOMETRIC_NORMAL: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
-/// Distance along the view axis, an `f32` as four bytes, least significant first. A colour target, since sampled depth
-/// textures fail on some GL drivers, and of bytes, since these have no multisampled `R32Float`.
-pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Uint;
+/// The light verdicts: a bit per light, set where it is blocked.
+pub const VERDICTS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// Sum of what the lights send to the eye.
 pub const RADIANCE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Exposed radiance.
 pub const HDR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// Display-encoded picture.
-pub const LDR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// The picture: shaders write it linear, its bytes are encoded.
+pub const LDR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+
+/// Distance along the view axis, an `f32` as four bytes, least significant first: sampled depth textures fail on some
+/// GL drivers.
+pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Uint;
+/// Shading normal.
+pub const NORMAL: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
+/// Base colour.
+pub const ALBEDO: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
 /// What [`DEPTH`] holds where there is no surface.
 pub const NO_SURFACE: f32 = f32::MAX;
 
-/// Bytes per sample: albedo, surface, geometric normal, depth, radiance, depth-stencil (padded).
-const BYTES_PER_SAMPLE: u64 = 4 + 8 + 4 + 4 + 8 + 8;
-/// Bytes per pixel beside its samples: HDR, LDR.
-const BYTES_PER_PIXEL: u64 = 8 + 4;
+/// Bytes per sample: verdicts, radiance or picture, depth-stencil (padded).
+const BYTES_PER_SAMPLE: u64 = 4 + 8 + 8;
+/// Bytes per pixel beside its samples: HDR, LDR, and the attributes' depth, normal, albedo and depth-stencil.
+const BYTES_PER_PIXEL: u64 = 8 + 4 + 4 + 4 + 4 + 8;
 /// All targets together may take this much.
 const MEMORY_LIMIT: u64 = 8 << 30;
 
-/// Textures that passes draw to.
+/// Textures that pictures are drawn to. Those that not every frame needs are made by the first that does.
 #[derive(Debug)]
 pub struct Targets {
     pub size: [u32; 2],
     pub samples: u32,
-    pub albedo: wgpu::Texture,
-    pub surface: wgpu::Texture,
-    pub geometric_normal: wgpu::Texture,
-    pub depth: wgpu::Texture,
-    pub radiance: wgpu::Texture,
     pub depth_stencil: wgpu::TextureView,
-    /// Single-sampled.
-    pub hdr: wgpu::Texture,
-    /// Single-sampled.
+    /// The picture, single-sampled.
     pub ldr: wgpu::Texture,
-    /// Albedo, surface, geometric normal and depth for reading.
-    pub gbuffer: wgpu::BindGroup,
+    pub ldr_view: wgpu::TextureView,
+    ldr_samples: Option<wgpu::TextureView>,
+    hdr: Option<HdrTargets>,
+    verdicts: Option<Verdicts>,
+}
+
+/// What frames need that do not write the picture directly.
+#[derive(Debug)]
+pub struct HdrTargets {
+    /// Radiance before exposure.
+    pub samples: wgpu::TextureView,
+    /// Exposed radiance, single-sampled.
+    pub texture: wgpu::Texture,
+    pub view: wgpu::TextureView,
+}
+
+/// What frames with shadows need.
+#[derive(Debug)]
+pub struct Verdicts {
+    pub view: wgpu::TextureView,
+    /// For reading.
+    pub bind_group: wgpu::BindGroup,
 }
 
 impl Targets {
-    /// Creates the targets, after the checks of [`check_size`].
-    pub fn new(gpu: &Gpu, layouts: &Layouts, size: [u32; 2], samples: u32) -> Result<Self, RenderError> {
+    /// Creates what every frame needs, after a check of the size.
+    pub fn new(gpu: &Gpu, size: [u32; 2], samples: u32) -> Result<Self, RenderError> {
         check_size(size, samples, gpu.device.limits().max_texture_dimension_2d)?;
-        let create = |label, format, samples| {
-            let mut usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
-            if format != gpu.depth_stencil {
-                usage |= wgpu::TextureUsages::TEXTURE_BINDING;
-                if samples == 1 {
-                    usage |= wgpu::TextureUsages::COPY_SRC;
-                }
-            }
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: samples,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage,
-                view_formats: &[],
-            })
-        };
-        let albedo = create("albedo", ALBEDO, samples);
-        let surface = create("surface", SURFACE, samples);
-        let geometric_normal = create("geometric normal", GEOMETRIC_NORMAL, samples);
-        let depth = create("depth", DEPTH, samples);
-        let views = [&albedo, &surface, &geometric_normal, &depth].map(view);
-        let resources = views.each_ref().map(wgpu::BindingResource::TextureView);
-        let gbuffer = bind(&gpu.device, "G-buffer", layouts.gbuffer(samples), &resources);
+        let ldr = create(gpu, "picture", LDR, size, 1);
         Ok(Self {
             size,
             samples,
-            albedo,
-            surface,
-            geometric_normal,
-            depth,
-            radiance: create("radiance", RADIANCE, samples),
-            depth_stencil: view(&create("depth-stencil", gpu.depth_stencil, samples)),
-            hdr: create("HDR", HDR, 1),
-            ldr: create("LDR", LDR, 1),
-            gbuffer,
+            depth_stencil: view(&create(gpu, "depth-stencil", gpu.depth_stencil, size, samples)),
+            ldr_view: view(&ldr),
+            ldr,
+            ldr_samples: None,
+            hdr: None,
+            verdicts: None,
         })
     }
+
+    /// The samples of the picture, or the picture itself, and what they are resolved to.
+    pub fn picture(&mut self, gpu: &Gpu) -> (&wgpu::TextureView, Option<&wgpu::TextureView>) {
+        if self.samples == 1 {
+            return (&self.ldr_view, None);
+        }
+        let (size, samples) = (self.size, self.samples);
+        let multi = self.ldr_samples.get_or_insert_with(|| view(&create(gpu, "picture samples", LDR, size, samples)));
+        (multi, Some(&self.ldr_view))
+    }
+
+    pub fn hdr(&mut self, gpu: &Gpu) -> &HdrTargets {
+        let (size, samples) = (self.size, self.samples);
+        self.hdr.get_or_insert_with(|| {
+            let texture = create(gpu, "HDR", HDR, size, 1);
+            HdrTargets {
+                samples: view(&create(gpu, "radiance", RADIANCE, size, samples)),
+                view: view(&texture),
+                texture,
+            }
+        })
+    }
+
+    pub fn verdicts(&mut self, gpu: &Gpu, layouts: &Layouts) -> &Verdicts {
+        let (size, samples) = (self.size, self.samples);
+        self.verdicts.get_or_insert_with(|| {
+            let view = view(&create(gpu, "verdicts", VERDICTS, size, samples));
+            let resources = [wgpu::BindingResource::TextureView(&view)];
+            Verdicts { bind_group: bind(&gpu.device, "verdicts", layouts.verdicts(samples), &resources), view }
+        })
+    }
+}
+
+/// Textures that the measured outputs are drawn to, single-sampled.
+#[derive(Debug)]
+pub struct Attributes {
+    pub size: [u32; 2],
+    pub depth: wgpu::Texture,
+    pub normal: wgpu::Texture,
+    pub albedo: wgpu::Texture,
+    pub depth_stencil: wgpu::TextureView,
+    /// The distance for reading.
+    pub bind_group: wgpu::BindGroup,
+}
+
+impl Attributes {
+    /// Creates them, after a check of the size.
+    pub fn new(gpu: &Gpu, layouts: &Layouts, size: [u32; 2]) -> Result<Self, RenderError> {
+        check_size(size, 1, gpu.device.limits().max_texture_dimension_2d)?;
+        let depth = create(gpu, "depth", DEPTH, size, 1);
+        let resources = [wgpu::BindingResource::TextureView(&view(&depth))];
+        Ok(Self {
+            size,
+            bind_group: bind(&gpu.device, "attributes", &layouts.attributes, &resources),
+            depth,
+            normal: create(gpu, "normal", NORMAL, size, 1),
+            albedo: create(gpu, "albedo", ALBEDO, size, 1),
+            depth_stencil: view(&create(gpu, "depth-stencil", gpu.depth_stencil, size, 1)),
+        })
+    }
+}
+
+fn create(gpu: &Gpu, label: &str, format: wgpu::TextureFormat, size: [u32; 2], samples: u32) -> wgpu::Texture {
+    let mut usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
+    if format != gpu.depth_stencil {
+        usage |= wgpu::TextureUsages::TEXTURE_BINDING;
+        if samples == 1 {
+            usage |= wgpu::TextureUsages::COPY_SRC;
+        }
+    }
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: samples,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    })
 }
 
 /// A view of the whole texture.

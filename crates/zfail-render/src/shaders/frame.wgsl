@@ -1,4 +1,23 @@
-// What every pass knows about the view. View space: right-handed, the eye at the origin, looking along -z.
+// What every pass knows about view and lights. View space: right-handed, the eye at the origin, looking along -z.
+
+struct Light {
+    // View space: where the light is, or the unit vector towards it.
+    position: vec3<f32>,
+    // 1 for a light in a place, 0 for one at infinity: the w of McGuire et al. 2003, section 4.
+    placed: f32,
+    // View space, unit: the way a spot light shines.
+    axis: vec3<f32>,
+    // 1 / range, 0 where there is no limit.
+    per_range: f32,
+    // Pre-exposed intensity (candela) or illuminance (lux).
+    color: vec3<f32>,
+    // Of the cone's half angle: 0 and -1 where there is no cone.
+    sin_outer: f32,
+    cos_outer: f32,
+    // Falloff from the inner to the outer angle, as KHR_lights_punctual defines it: 0 and 1 where there is no cone.
+    angle_scale: f32,
+    angle_offset: f32,
+}
 
 struct Frame {
     // View-space x and y per unit of NDC: at unit depth (perspective), or anywhere (orthographic).
@@ -9,13 +28,20 @@ struct Frame {
     ambient: vec3<f32>,
     // 1 for an orthographic camera, 0 for a perspective one.
     orthographic: f32,
-    // Scale from scene radiance to the radiance that targets hold.
+    // Scale from scene radiance to the radiance that shaders compute.
     pre_exposure: f32,
+    // Scale from that to the picture's, where it is known beforehand.
+    exposure: f32,
     // Lights in use.
     light_count: u32,
+    // The first lights once more: uniforms are read once for many pixels.
+    lights: array<Light, UNROLLED>,
 }
 
+const UNROLLED: u32 = 4u;
+
 @group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(1) var<storage, read> lights: array<Light>;
 
 // The view-space point in a pixel's centre at a distance along the view axis.
 fn view_position(pixel: vec2<f32>, depth: f32) -> vec3<f32> {

@@ -11,8 +11,8 @@ struct Exposure {
     scale: f32,
 }
 
-@group(0) @binding(2) var<storage, read_write> histogram: array<atomic<u32>, BINS>;
-@group(0) @binding(3) var<storage, read_write> exposure: Exposure;
+@group(0) @binding(1) var<storage, read_write> histogram: array<atomic<u32>, BINS>;
+@group(0) @binding(2) var<storage, read_write> exposure: Exposure;
 
 var<workgroup> counts: array<atomic<u32>, BINS>;
 
@@ -26,9 +26,8 @@ fn count(@builtin(global_invocation_id) pixel: vec3<u32>, @builtin(local_invocat
     if all(pixel.xy < textureDimensions(radiance_texture)) {
         let radiance = textureLoad(radiance_texture, pixel.xy, 0);
         let luminance = dot(radiance.rgb, vec3<f32>(0.2126, 0.7152, 0.0722));
-        // Surfaces only, and only those that exposure applies to. False for NaN.
-        let depth = depth_from(textureLoad(depth_texture, pixel.xy, 0));
-        if depth < NO_SURFACE && radiance.a < 0.5 && luminance > exp2(DARKEST) {
+        // Surfaces only (the background has a negative alpha), and only those that exposure applies to. False for NaN.
+        if radiance.a >= 0.0 && radiance.a < 0.5 && luminance > exp2(DARKEST) {
             let stop = (log2(luminance) - DARKEST) / (BRIGHTEST_STOP - DARKEST);
             atomicAdd(&counts[u32(clamp(stop, 0.0, 1.0) * f32(BINS - 1u) + 0.5)], 1u);
         }

@@ -1,14 +1,20 @@
-//! Outputs that describe the visible surface, decoded from the G-buffer on the CPU.
+//! Outputs that describe the visible surface, decoded from the attribute pass on the CPU.
 
 use crate::aov::{AovKind, Aovs};
-use crate::targets::{NO_SURFACE, Targets};
+use crate::targets::{Attributes, NO_SURFACE};
 use crate::{Gpu, RenderError, read_back, srgb};
 use half::f16;
 use zfail_plan::glam::{DVec3, Vec2, Vec3};
 use zfail_plan::view::{Projection, View};
 
 /// Fills depth, position, normal and albedo of `out`, as far as `kinds` ask for them.
-pub fn fill(out: &mut Aovs, gpu: &Gpu, targets: &Targets, view: &View, kinds: &[AovKind]) -> Result<(), RenderError> {
+pub fn fill(
+    out: &mut Aovs,
+    gpu: &Gpu,
+    targets: &Attributes,
+    view: &View,
+    kinds: &[AovKind],
+) -> Result<(), RenderError> {
     let wants = |kind| kinds.contains(&kind);
     if !AovKind::ALL[2..].iter().any(|&kind| wants(kind)) {
         return Ok(());
@@ -18,9 +24,9 @@ pub fn fill(out: &mut Aovs, gpu: &Gpu, targets: &Targets, view: &View, kinds: &[
         out.position = positions(&depth, view);
     }
     if wants(AovKind::Normal) {
-        let texels: Vec<[u16; 4]> = bytemuck::pod_collect_to_vec(&read_back::texture(gpu, &targets.surface)?);
+        let texels: Vec<[u16; 2]> = bytemuck::pod_collect_to_vec(&read_back::texture(gpu, &targets.normal)?);
         let world_from_view = view.world_from_view.matrix3.as_mat3();
-        out.normal = per_surface(&depth, &texels, |&[x, y, ..]| {
+        out.normal = per_surface(&depth, &texels, |&[x, y]| {
             world_from_view * from_octahedral(Vec2::new(f16::from_bits(x).to_f32(), f16::from_bits(y).to_f32()))
         });
     }

@@ -1,0 +1,175 @@
+//! Surfaces with all their light, in one draw each: what McGuire et al. 2003, section 8, do in an ambient pass and one
+//! illumination pass per light.
+
+use crate::draw_list::{Alpha, Draw, Look};
+use crate::frame::FrameData;
+use crate::gpu_data::UNROLLED;
+use crate::layouts::Layouts;
+use crate::pipeline::{ADD, Recipe, depth_test};
+use crate::scene::SceneOnGpu;
+use crate::targets::{LDR, RADIANCE};
+use crate::{Gpu, shader};
+use std::collections::HashMap;
+
+/// What a pass over the scene does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Step {
+    pub samples: u32,
+    /// The picture itself is written, not radiance.
+    pub developed: bool,
+    /// Lights in use; all numbers that are not unrolled are the same.
+    lights: u32,
+    /// Depth and verdicts are there already.
+    pub shadowed: bool,
+    /// Adds more lights to what an earlier step has drawn.
+    pub added: bool,
+}
+
+impl Step {
+    pub fn new(samples: u32, developed: bool, lights: usize, shadowed: bool, added: bool) -> Self {
+        Self { samples, developed, lights: lights.min(UNROLLED + 1) as u32, shadowed, added }
+    }
+}
+
+/// What a pipeline depends on.
+type Key = (Look, bool, Step);
+
+/// Pipelines of the pass, made when they are first needed. Blended surfaces with two sides have two: inner sides first.
+#[derive(Debug, Default)]
+pub struct ForwardPass {
+    pipelines: HashMap<Key, Vec<wgpu::RenderPipeline>>,
+}
+
+/// What the pass draws to.
+pub struct Attachments<'a> {
+    pub color: wgpu::RenderPassColorAttachment<'a>,
+    pub depth_stencil: wgpu::RenderPassDepthStencilAttachment<'a>,
+    /// Needed by shadowed steps.
+    pub verdicts: Option<&'a wgpu::BindGroup>,
+    pub timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'a>>,
+}
+
+impl ForwardPass {
+    /// Makes the pipelines that `draws` lack.
+    pub fn prepare<'d>(
+        &mut self,
+        gpu: &Gpu,
+        layouts: &Layouts,
+        scene: &SceneOnGpu,
+        step: Step,
+        draws: impl Iterator<Item = &'d Draw>,
+    ) {
+        for draw in draws {
+            let key = key(scene.draws.parts[draw.part].look, draw.mirrored, step);
+            self.pipelines.entry(key).or_insert_with(|| create(gpu, layouts, key));
+        }
+    }
+
+    /// Draws `solid` and then `blended`, for which [`Self::prepare`] has been called.
+    pub fn encode<'d>(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        attachments: Attachments<'_>,
+        frame: &FrameData,
+        scene: &SceneOnGpu,
+        step: Step,
+        draws: impl Iterator<Item = &'d Draw>,
+    ) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("forward"),
+            color_attachments: &[Some(attachments.color)],
+            depth_stencil_attachment: Some(attachments.depth_stencil),
+            timestamp_writes: attachments.timestamp_writes,
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &frame.bind_group, &[]);
+        if let Some(verdicts) = attachments.verdicts {
+            pass.set_bind_group(2, verdicts, &[]);
+        }
+        for draw in draws {
+            let part = &scene.draws.parts[draw.part];
+            let Some(mesh) = &scene.meshes[part.mesh] else { continue };
+            mesh.bind(&mut pass, part.look.vertices(), &frame.instances);
+            pass.set_bind_group(1, &scene.materials[part.material], &[]);
+            for pipeline in self.pipelines.get(&key(part.look, draw.mirrored, step)).into_iter().flatten() {
+                pass.set_pipeline(pipeline);
+                pass.draw_indexed(part.indices.clone(), 0, draw.slots.clone());
+            }
+        }
+    }
+}
+
+fn key(look: Look, mirrored: bool, step: Step) -> Key {
+    // No shadow falls on blended surfaces.
+    let shadowed = step.shadowed && look.alpha != Alpha::Blend;
+    (look, mirrored, Step { shadowed, ..step })
+}
+
+fn create(gpu: &Gpu, layouts: &Layouts, (look, mirrored, step): Key) -> Vec<wgpu::RenderPipeline> {
+    let blend = look.alpha == Alpha::Blend;
+    let [base_color, metallic_roughness, normal, occlusion, emissive] = look.textured;
+    let constants = [
+        ("BASE_COLOR", base_color),
+        ("METALLIC_ROUGHNESS", metallic_roughness),
+        ("NORMAL", normal),
+        ("OCCLUSION", occlusion),
+        ("EMISSIVE", emissive),
+        ("ROUGH", look.rough),
+        // Masked surfaces have been cut out by the depth pass already.
+        ("ALPHA_MASK", look.alpha == Alpha::Mask && !step.shadowed),
+        ("BLEND", blend),
+        ("UNLIT", look.unlit),
+        ("ADDED", step.added),
+        ("DEVELOPED", step.developed),
+    ]
+    .map(|(name, value)| (name, f64::from(u8::from(value))));
+    let mut constants = constants.to_vec();
+    constants.push(("LIGHTS", f64::from(step.lights)));
+    let state = if blend {
+        (wgpu::CompareFunction::Greater, false)
+    } else if step.shadowed {
+        (wgpu::CompareFunction::Equal, false)
+    } else {
+        (wgpu::CompareFunction::GreaterEqual, true)
+    };
+    let mut groups = vec![&layouts.frame, &layouts.material];
+    if step.shadowed {
+        groups.push(layouts.verdicts(step.samples));
+    }
+    let recipe = Recipe {
+        program: shader::forward(look.vertices(), step.shadowed.then_some(step.samples)),
+        entry: "forward",
+        constants: &constants,
+        groups: &groups,
+        targets: &[Some(wgpu::ColorTargetState {
+            format: if step.developed { LDR } else { RADIANCE },
+            blend: if blend {
+                Some(over(look.unlit))
+            } else if step.added {
+                Some(ADD)
+            } else {
+                None
+            },
+            write_mask: wgpu::ColorWrites::ALL,
+        })],
+        depth_stencil: Some(depth_test(gpu.depth_stencil, state.0, state.1)),
+        samples: step.samples,
+    };
+    let faces: &[Option<wgpu::Face>] = match (blend, look.double_sided) {
+        (true, true) => &[Some(wgpu::Face::Front), Some(wgpu::Face::Back)],
+        (false, true) => &[None],
+        (_, false) => &[Some(wgpu::Face::Back)],
+    };
+    faces.iter().map(|&cull| recipe.scene(&gpu.device, look.vertices(), mirrored, cull)).collect()
+}
+
+/// Covers what is there. The target's alpha is the share that is shown without exposure: unlit surfaces add to it.
+fn over(unlit: bool) -> wgpu::BlendState {
+    let over = |src_factor| wgpu::BlendComponent {
+        src_factor,
+        dst_factor: wgpu::BlendFactor::OneMinusSrcAlpha,
+        operation: wgpu::BlendOperation::Add,
+    };
+    let alpha = over(if unlit { wgpu::BlendFactor::One } else { wgpu::BlendFactor::Zero });
+    wgpu::BlendState { color: over(wgpu::BlendFactor::One), alpha }
+}

@@ -1,0 +1,162 @@
+//! Depth, and which lights reach what is visible: every light's volumes are counted in the stencil, and its verdict is
+//! kept as a bit of a colour target before the next light needs the stencil. One render pass for all of them.
+
+use crate::draw_list::{Alpha, Draw, Look};
+use crate::frame::FrameData;
+use crate::geometry::Vertices;
+use crate::layouts::Layouts;
+use crate::pipeline::{ADD, Recipe, cleared, cleared_depth, depth_test};
+use crate::scene::SceneOnGpu;
+use crate::targets::VERDICTS;
+use crate::timing::Timer;
+use crate::{Gpu, shader};
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// Lights whose verdicts fit a texel.
+pub const LIGHTS: usize = 32;
+/// Of these, those that share a channel.
+const PER_CHANNEL: usize = 8;
+
+/// What a depth pipeline depends on: winding, two sides, and for masked surfaces whether they have a texture.
+type Key = (bool, bool, Option<bool>);
+
+/// Pipelines of the pass for one sample count.
+#[derive(Debug)]
+pub struct VerdictPass {
+    samples: u32,
+    depth: HashMap<Key, wgpu::RenderPipeline>,
+    volumes: zfail::Pipelines,
+    /// One per channel.
+    keep: [wgpu::RenderPipeline; 4],
+}
+
+/// One light of the pass.
+#[derive(Clone, Copy, Debug)]
+pub struct Verdict {
+    /// Its number in the frame that the shadows were prepared for.
+    pub light: usize,
+    /// Pixels that it may reach: x, y, width, height; `None` where nothing can be in its shadow.
+    pub scissor: Option<[u32; 4]>,
+    /// Where its time goes.
+    pub span: Option<usize>,
+}
+
+impl VerdictPass {
+    pub fn new(gpu: &Gpu, shadows: &zfail::Shadows, samples: u32) -> Self {
+        let target = zfail::Target { colors: &[Some(VERDICTS)], depth_stencil: gpu.depth_stencil, samples };
+        // Nothing to do where the count is 0. Elsewhere the count is reset for the next light.
+        let face = wgpu::StencilFaceState {
+            compare: wgpu::CompareFunction::NotEqual,
+            fail_op: wgpu::StencilOperation::Keep,
+            depth_fail_op: wgpu::StencilOperation::Zero,
+            pass_op: wgpu::StencilOperation::Zero,
+        };
+        let keep =
+            [wgpu::ColorWrites::RED, wgpu::ColorWrites::GREEN, wgpu::ColorWrites::BLUE, wgpu::ColorWrites::ALPHA].map(
+                |write_mask| {
+                    Recipe {
+                        program: shader::VERDICT,
+                        entry: "verdict",
+                        constants: &[],
+                        groups: &[],
+                        targets: &[Some(wgpu::ColorTargetState { format: VERDICTS, blend: Some(ADD), write_mask })],
+                        depth_stencil: Some(wgpu::DepthStencilState {
+                            stencil: wgpu::StencilState { front: face, back: face, read_mask: 0xff, write_mask: 0xff },
+                            ..depth_test(gpu.depth_stencil, wgpu::CompareFunction::Always, false)
+                        }),
+                        samples,
+                    }
+                    .screen(&gpu.device)
+                },
+            );
+        Self { samples, depth: HashMap::new(), volumes: shadows.pipelines(&gpu.device, &target), keep }
+    }
+
+    /// Makes the pipelines that the scene's solid draws lack.
+    pub fn prepare(&mut self, gpu: &Gpu, layouts: &Layouts, scene: &SceneOnGpu) {
+        let samples = self.samples;
+        for draw in &scene.draws.solid {
+            let key = key(scene.draws.parts[draw.part].look, draw);
+            self.depth.entry(key).or_insert_with(|| create(gpu, layouts, samples, key));
+        }
+    }
+
+    /// Fills depth and verdicts, the first light's in the lowest bit of red.
+    pub fn encode(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        verdicts: &wgpu::TextureView,
+        depth_stencil: &wgpu::TextureView,
+        frame: &FrameData,
+        scene: &SceneOnGpu,
+        lights: impl Iterator<Item = Verdict>,
+        timer: (&Timer, Option<usize>),
+    ) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("verdicts"),
+            color_attachments: &[cleared(verdicts, [0.0; 4])],
+            depth_stencil_attachment: Some(cleared_depth(depth_stencil)),
+            timestamp_writes: timer.1.and_then(|span| timer.0.pass(span)),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &frame.bind_group, &[]);
+        for draw in &scene.draws.solid {
+            let part = &scene.draws.parts[draw.part];
+            let (Some(mesh), Some(pipeline)) = (&scene.meshes[part.mesh], self.depth.get(&key(part.look, draw))) else {
+                continue;
+            };
+            pass.set_pipeline(pipeline);
+            mesh.bind(&mut pass, vertices(part.look.alpha), &frame.instances);
+            if part.look.alpha == Alpha::Mask {
+                pass.set_bind_group(1, &scene.materials[part.material], &[]);
+            }
+            pass.draw_indexed(part.indices.clone(), 0, draw.slots.clone());
+        }
+        for (bit, light) in lights.take(LIGHTS).enumerate() {
+            if let Some(span) = light.span {
+                timer.0.stamp(&mut pass, span, false);
+            }
+            if let Some([x, y, width, height]) = light.scissor {
+                scene.shadows.draw(&mut pass, &self.volumes, light.light);
+                let within: Range<u32> = (bit % PER_CHANNEL) as u32..(bit % PER_CHANNEL) as u32 + 1;
+                pass.set_scissor_rect(x, y, width, height);
+                pass.set_stencil_reference(0);
+                pass.set_pipeline(&self.keep[bit / PER_CHANNEL]);
+                pass.draw(0..3, within);
+            }
+            if let Some(span) = light.span {
+                timer.0.stamp(&mut pass, span, true);
+            }
+        }
+    }
+}
+
+fn vertices(alpha: Alpha) -> Vertices {
+    if alpha == Alpha::Mask { Vertices::Textured } else { Vertices::Depth }
+}
+
+fn key(look: Look, draw: &Draw) -> Key {
+    (draw.mirrored, look.double_sided, (look.alpha == Alpha::Mask).then_some(look.textured[0]))
+}
+
+fn create(gpu: &Gpu, layouts: &Layouts, samples: u32, (mirrored, double_sided, mask): Key) -> wgpu::RenderPipeline {
+    let constants = [("BASE_COLOR", f64::from(u8::from(mask == Some(true))))];
+    let both = [&layouts.frame, &layouts.material];
+    let recipe = Recipe {
+        program: if mask.is_some() { shader::CUTOUT } else { shader::DEPTH },
+        entry: "depth",
+        constants: if mask.is_some() { &constants } else { &[] },
+        groups: if mask.is_some() { &both } else { &[] },
+        targets: &[Some(wgpu::ColorTargetState {
+            format: VERDICTS,
+            blend: None,
+            write_mask: wgpu::ColorWrites::empty(),
+        })],
+        depth_stencil: Some(depth_test(gpu.depth_stencil, wgpu::CompareFunction::GreaterEqual, true)),
+        samples,
+    };
+    let cull = if double_sided { None } else { Some(wgpu::Face::Back) };
+    let alpha = if mask.is_some() { Alpha::Mask } else { Alpha::Opaque };
+    recipe.scene(&gpu.device, vertices(alpha), mirrored, cull)
+}
