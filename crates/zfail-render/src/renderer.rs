@@ -227,7 +227,7 @@ impl<'g> Renderer<'g> {
             pass.prepare(gpu, layouts, scene);
             let verdicts = range.map(|light| Verdict {
                 light,
-                scissor: Some(figures[light].scissor).filter(|_| figures[light].vertices > 0),
+                scissor: Some(figures[light].scissor).filter(|_| figures[light].has_shadow()),
                 span: spans.light(light),
             });
             let verdict_view = &targets.verdicts(gpu, layouts).view;

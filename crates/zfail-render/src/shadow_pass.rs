@@ -28,10 +28,7 @@ impl ShadowPass {
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &targets.depth_stencil,
                 depth_ops: None,
-                stencil_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(shadows.stencil_clear(light)),
-                    store: wgpu::StoreOp::Store,
-                }),
+                stencil_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0), store: wgpu::StoreOp::Store }),
             }),
             ..Default::default()
         });

@@ -1,9 +1,9 @@
 //! Exact, bias-free stencil shadows for [`wgpu`] renderers.
 //!
 //! Give [`Shadows`] your meshes once and, every frame, the camera, the casters and the lights. Then, for each light,
-//! clear the stencil of your depth-stencil target to [`Shadows::stencil_clear`], let [`Shadows::draw`] encode the shadow
-//! volumes into your pass, and light the surfaces with [`lit_stencil`] and stencil reference 0: a sample passes exactly
-//! where a ray from the visible point reaches the light. There is no bias, no resolution and no filter to tune.
+//! clear the stencil of your depth-stencil target, let [`Shadows::draw`] encode the shadow volumes into your pass, and
+//! light the surfaces with [`lit_stencil`] and stencil reference 0: a sample passes exactly where a ray from the visible
+//! point reaches the light. There is no bias, no resolution and no filter to tune.
 //!
 //! The algorithms are those of Everitt & Kilgard 2002 and McGuire et al. 2003, on any mesh (see [`zfail_plan`]).
 //!

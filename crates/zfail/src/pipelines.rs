@@ -47,6 +47,8 @@ pub struct Pipelines {
     plain: Set,
     /// For what a finite far plane would clip: depth is clamped.
     clamped: Set,
+    /// Sets every count to the reference.
+    pub(crate) start: RenderPipeline,
     pub(crate) fold: RenderPipeline,
 }
 
@@ -77,6 +79,7 @@ impl Pipelines {
             } else {
                 maker.set("clamped_volume", Some("clamped_depth"), false, false)
             },
+            start: maker.start(),
             fold: maker.fold(),
         }
     }
@@ -119,6 +122,12 @@ impl Maker<'_> {
                 self.pipeline(vertex, fragment, primitive, CompareFunction::Greater, stencil)
             })
         })
+    }
+
+    fn start(&self) -> RenderPipeline {
+        let face = StencilFaceState { pass_op: StencilOperation::Replace, ..KEEP };
+        let stencil = StencilState { front: face, back: face, read_mask: 0, write_mask: 0xff };
+        self.pipeline("image", None, PrimitiveState::default(), CompareFunction::Always, stencil)
     }
 
     /// Where a batch left a count, sets the sticky bit and clears the count.

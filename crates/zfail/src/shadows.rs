@@ -204,34 +204,28 @@ impl Shadows {
         self.plan().lights.get(light).map(|light| light.stats).unwrap_or_default()
     }
 
-    /// What to clear the stencil to before [`Self::draw`] for one light of the prepared frame: the layers of shadow over
-    /// the near rectangle of casters that are counted in front of the visible surface.
-    #[must_use]
-    pub fn stencil_clear(&self, light: usize) -> u32 {
-        self.plan().lights.get(light).map_or(0, |light| u32::from(light.clear))
-    }
-
     /// Encodes the volumes of one light of the prepared frame. The pass holds the finished depth of the view and a
-    /// stencil of [`Self::stencil_clear`]; afterwards the stencil is 0 exactly where the light arrives (with
-    /// [`Counting::Verdict`]).
+    /// stencil of 0; afterwards the stencil is 0 exactly where the light arrives (with [`Counting::Verdict`]).
     ///
     /// Sets pipeline, bind group 0, index buffer, stencil reference and scissor; the scissor is left at the whole image.
     ///
     /// Does nothing if the prepared frame has no such light, or the last [`Self::prepare`] failed.
     pub fn draw(&self, pass: &mut RenderPass<'_>, pipelines: &Pipelines, light: usize) {
-        self.draw_plan(pass, pipelines, light, self.plan());
-    }
-
-    fn draw_plan(&self, pass: &mut RenderPass<'_>, pipelines: &Pipelines, light: usize, plan: &FramePlan) {
+        let plan = self.plan();
         let Some(light) = plan.lights.get(light) else { return };
-        let Some(scissor) = light.scissor else { return };
-        if light.batches.iter().all(Range::is_empty) {
-            return;
-        }
+        let Some(scissor) = light.scissor.filter(|_| light.stats.has_shadow()) else { return };
         pass.set_bind_group(0, &self.bindings, &[]);
         pass.set_index_buffer(self.buffers.indices.slice(..), IndexFormat::Uint32);
-        let last = light.batches.len() - 1;
+        let last = light.batches.len().saturating_sub(1);
         let mut state = PassState { scissor: None, pipeline: None };
+        // Modulo 256, as all counting is.
+        let near_count = light.stats.near_count % 256;
+        if near_count > 0 {
+            state.set_scissor(pass, scissor);
+            state.set_pipeline(pass, &pipelines.start);
+            pass.set_stencil_reference(near_count);
+            pass.draw(0..3, 0..1);
+        }
         for (i, batch) in light.batches.iter().enumerate() {
             for d in batch.clone() {
                 self.draw_volume(pass, &mut state, pipelines, d, &plan.draws[d as usize], last > 0);

@@ -154,7 +154,7 @@ fn every_technique_counts_alike() {
             let light = &plan.lights[0];
             (0..3).for_each(|case| cases[case] += light.stats.cases[case]);
             if i == 0 {
-                cleared += u32::from(light.clear > 0);
+                cleared += u32::from(light.stats.near_count > 0);
                 scissored += plan.draws.iter().filter(|d| Some(d.scissor) != light.scissor).count();
             }
             fans += u32::from(measures.fan && light.stats.triangles.dark_cap > 0);
@@ -190,7 +190,7 @@ fn every_step_taken_wrongly_is_noticed() {
         ("z-pass where the near rectangle is in shadow", Technique::Mcguire, |plan| {
             plan.draws.iter_mut().for_each(|draw| draw.z_pass = true);
         }),
-        ("a near count forgotten", Technique::Auto, |plan| plan.lights[0].clear = 0),
+        ("a near count forgotten", Technique::Auto, |plan| plan.lights[0].stats.near_count = 0),
         ("a scissor too tight", Technique::Auto, |plan| {
             for draw in &mut plan.draws {
                 let [x, y, width, height] = draw.scissor;

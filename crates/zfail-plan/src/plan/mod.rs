@@ -115,8 +115,6 @@ pub struct LightPlan {
     pub batches: Vec<Range<u32>>,
     /// Pixels the light may reach; `None` where it reaches none.
     pub scissor: Option<Rectangle>,
-    /// What the stencil has to hold before the first batch: the layers of z-pass casters over the near rectangle.
-    pub clear: u8,
     /// Figures for reports.
     pub stats: LightStats,
 }

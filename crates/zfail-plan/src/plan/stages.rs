@@ -359,13 +359,12 @@ fn count_from_near_rectangle(
         let (within, parts) = if count == 0 { (within, parts) } else { (scissor, Parts::ALL) };
         pair.role = Role::Active { within, parts, z_pass: true };
     }
-    light.clear = (sum % 256) as u8;
+    light.stats.near_count = sum;
 }
 
 impl LightPlan {
     fn begin(&mut self, scissor: Option<Rectangle>) {
         self.batches.clear();
-        self.clear = 0;
         self.scissor = scissor;
         self.stats = LightStats { scissor: scissor.unwrap_or_default(), ..LightStats::default() };
     }

@@ -57,6 +57,8 @@ pub struct LightStats {
     pub culled: [u32; Culled::ALL.len()],
     /// Casters drawn in case 1 (z-pass), 2 (z-fail without light cap) and 3 (z-fail) of McGuire et al., section 7.
     pub cases: [u32; 3],
+    /// Layers over the whole near rectangle, of casters in case 1.
+    pub near_count: u32,
     /// Triangles submitted.
     pub triangles: Triangles,
     /// Vertex indices submitted.
@@ -69,6 +71,12 @@ impl LightStats {
     /// How many casters were left out for each reason that occurred.
     pub fn reasons(&self) -> impl Iterator<Item = (Culled, u32)> {
         Culled::ALL.into_iter().zip(self.culled).filter(|&(_, count)| count > 0)
+    }
+
+    /// Whether anything may be in the light's shadow.
+    #[must_use]
+    pub fn has_shadow(&self) -> bool {
+        self.vertices > 0 || self.near_count > 0
     }
 
     pub(super) fn cull(&mut self, reason: Culled) {

@@ -126,10 +126,7 @@ pub fn draw(
                     load: wgpu::LoadOp::Clear(setup.depth_clear),
                     store: wgpu::StoreOp::Store,
                 }),
-                stencil_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(shadows.stencil_clear(0)),
-                    store: wgpu::StoreOp::Store,
-                }),
+                stencil_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0), store: wgpu::StoreOp::Store }),
             }),
             ..wgpu::RenderPassDescriptor::default()
         });
