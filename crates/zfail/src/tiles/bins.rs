@@ -146,3 +146,9 @@ fn centres(lo: f64, hi: f64, n: f64) -> Option<(u32, u32)> {
     let last = (hi - 0.5 + MARGIN).floor().min(n - 1.0);
     (first <= last).then_some((first as u32, last as u32))
 }
+impl Bins {
+    pub fn debug(&self, tx: u32, ty: u32, item: u32) -> bool {
+        let t = ty * self.tiles[0] + tx;
+        self.spans.iter().any(|s| s.first <= t && t < s.end && s.item == item)
+    }
+}

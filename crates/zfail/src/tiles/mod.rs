@@ -160,3 +160,18 @@ impl TilePass {
         pass.draw(0..3, 0..1);
     }
 }
+impl TilePass {
+    pub fn debug(&self, x: u32, y: u32, size: [u32; 2]) {
+        let (u, v) = (x as f32 + 0.5 - 0.5 * size[0] as f32, y as f32 + 0.5 - 0.5 * size[1] as f32);
+        let mut n = 0;
+        for (i, q) in self.quads.iter().enumerate() {
+            let e = q.eval(u, v);
+            if e[0].is_sign_positive() && e[1].is_sign_positive() && e[2].is_sign_negative() && e[3] > 0.0 {
+                n += 1;
+                let listed = self.bins.debug(x / 8, y / 8, i as u32);
+                println!("  quad {i} {e:?} listed {listed} {q:?}");
+            }
+        }
+        println!("{n} cover {x} {y}");
+    }
+}

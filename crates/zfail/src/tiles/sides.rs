@@ -183,3 +183,8 @@ fn unit(f: DVec3, size: DVec2) -> DVec3 {
     let f = to_pixels(f, size);
     f / f.x.hypot(f.y).max(f.z.abs() * 1e-30)
 }
+impl Quad {
+    pub fn eval(&self, u: f32, v: f32) -> [f32; 4] {
+        std::array::from_fn(|i| self.dx[i] * u + (self.dy[i] * v + self.origin[i]))
+    }
+}
