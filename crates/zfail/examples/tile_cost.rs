@@ -85,7 +85,8 @@ fn scene(g: &Gpu, path: &str) {
     // near rectangle's centre
     let q_world = view.world_from_view.transform_point3(DVec3::new(0.0, 0.0, -view.near()));
     let raster = Raster::new(g, &view, &casters, &plan);
-    let mut pass = TilePass::new(&g.device, FORMAT);
+    let mut pass = TilePass::new(&g.device);
+    let pipeline = pass.pipeline(&g.device, &zfail::Target { colors: &[], depth_stencil: FORMAT, samples: 1 }).unwrap();
     let n_: usize = std::env::var("N").ok().and_then(|n| n.parse().ok()).unwrap_or(20);
     for l in 0..lights.len() {
         let batch = plan.lights[l].batches[0].clone();
@@ -104,12 +105,12 @@ fn scene(g: &Gpu, path: &str) {
             let c = &casters[draw.caster as usize];
             Sides { positions: &c.topology.positions, clip_from_object: view.clip_from_object(&c.world_from_object),
                 world_from_object: c.world_from_object, light: draw.light,
-                indices: &plan.indices[draw.volume.sides.start as usize..draw.volume.sides.end as usize], mirrored: draw.mirrored }
+                scissor: [0, 0, SIZE[0], SIZE[1]], converging: draw.light.w == 0.0, indices: &plan.indices[draw.volume.sides.start as usize..draw.volume.sides.end as usize], mirrored: draw.mirrored }
         };
         let tris: u32 = batch.clone().map(|d| plan.draws[d as usize].volume.triangles()[0]).sum();
-        let mut inflated = bounds; inflated.add(view.eye()); let inflated = Bounds { min: inflated.min - 1.0, max: inflated.max + 1.0 };
+        
         let mut best = [f64::INFINITY; 8];
-        let mut figures = [0; 4];
+        let mut figures = zfail::tiles::TileStats::default();
         for _round in 0..3 {
             let mut measure = |k: usize, f: &mut dyn FnMut()| {
                 let t = cpu_ms();
@@ -126,20 +127,20 @@ fn scene(g: &Gpu, path: &str) {
             measure(0, &mut || submit(&mut |e| { stencil_pass(e, &attach, base, |_| {}); }));
             measure(1, &mut || submit(&mut |e| { stencil_pass(e, &attach, base, |p| raster.sides(p, &plan, batch.clone(), true)); }));
             measure(2, &mut || submit(&mut |e| { stencil_pass(e, &attach, 0, |p| raster.sides(p, &plan, batch.clone(), false)); }));
-            measure(3, &mut || { figures = pass.bin(batch.clone().map(sides), inflated, SIZE); });
-            measure(4, &mut || { pass.upload(&g.device, &g.queue, base, SIZE); submit(&mut |_| {}); });
+            measure(3, &mut || { pass.begin(&view, &bounds); figures = pass.add(&g.device, base, batch.clone().map(sides)).unwrap(); });
+            measure(4, &mut || { pass.upload(&g.device, &g.queue).unwrap(); submit(&mut |_| {}); });
             measure(5, &mut || submit(&mut |e| pass.encode(&g.device, e, &depth_only)));
-            measure(6, &mut || submit(&mut |e| stencil_pass(e, &attach, 0, |p| pass.draw(&g.device, p))));
+            measure(6, &mut || submit(&mut |e| stencil_pass(e, &attach, 0, |p| pass.draw(&g.device, p, &pipeline, 0))));
             measure(7, &mut || {
-                pass.bin(batch.clone().map(sides), inflated, SIZE);
-                pass.upload(&g.device, &g.queue, base, SIZE);
-                submit(&mut |e| { pass.encode(&g.device, e, &depth_only); stencil_pass(e, &attach, 0, |p| pass.draw(&g.device, p)); });
+                pass.begin(&view, &bounds); pass.add(&g.device, base, batch.clone().map(sides));
+                pass.upload(&g.device, &g.queue).unwrap();
+                submit(&mut |e| { pass.encode(&g.device, e, &depth_only); stencil_pass(e, &attach, 0, |p| pass.draw(&g.device, p, &pipeline, 0)); });
             });
         }
         let [clear, zpass, zfail, bin, upload, count, verdict, total] = best;
-        println!("light {l}: base {base}, side triangles {tris}, quads {} pairs {} tiles {} slots {}", figures[0], figures[1], figures[2], figures[3]);
+        println!("light {l}: base {base}, side triangles {tris}, quads {} pairs {} tiles {} ", figures.quads, figures.pairs, figures.tiles);
         println!("  clear {clear:.1}  raster z-pass sides {:.1}  z-fail whole {:.1} | tile total {:.1}: bin {bin:.1} upload {upload:.1} count {count:.1} verdict {:.1}; ns/pair {:.1} (count), {:.1} (bin)",
-            zpass - clear, zfail - clear, total - clear, verdict - clear, count * 1e6 / figures[1] as f64, bin * 1e6 / figures[1] as f64);
+            zpass - clear, zfail - clear, total - clear, verdict - clear, count * 1e6 / figures.pairs as f64, bin * 1e6 / figures.pairs as f64);
         // compare
         let mut e = g.device.create_command_encoder(&Default::default());
         stencil_pass(&mut e, &attach, base, |p| raster.sides(p, &plan, batch.clone(), true));
@@ -148,7 +149,7 @@ fn scene(g: &Gpu, path: &str) {
         stencil_pass(&mut e, &attach, 0, |p| raster.sides(p, &plan, batch.clone(), false));
         let f = read_stencil(g, e, &depth);
         let mut e = g.device.create_command_encoder(&Default::default());
-        stencil_pass(&mut e, &attach, 0, |p| pass.draw(&g.device, p));
+        stencil_pass(&mut e, &attach, 0, |p| pass.draw(&g.device, p, &pipeline, 0));
         let v = read_stencil(g, e, &depth);
         let counts = a.clone();
         let dz = read_depth(g, &depth);
@@ -163,7 +164,6 @@ fn scene(g: &Gpu, path: &str) {
             diff[2] += usize::from((f[i] != 0) != (v[i] != 0));
             diff[3] += usize::from(f[i] != a[i]);
         }
-        for &(x, y, ..) in where_.iter().step_by(1 + where_.len() / 3) { if std::env::var("DEBUG").is_ok() { pass.debug(x as u32, y as u32, SIZE); } println!("depth {}", dz[y * 1280 + x]); }
         println!("  count differs from raster z-pass on {} px, verdict on {} px; verdict from z-fail {}; z-fail from z-pass {} px; {:?}", diff[0], diff[1], diff[2], diff[3], where_.iter().step_by(1 + where_.len() / 8).collect::<Vec<_>>());
     }
 }
