@@ -67,7 +67,8 @@ impl Bins {
     pub fn add(&mut self, quad: u32, footprint: &[DVec2], scissor: Rectangle) {
         let [x, y, width, height] = scissor;
         let Some(last) = footprint.last() else { return };
-        let (top, bottom) = footprint.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), p| (lo.min(p.y), hi.max(p.y)));
+        let (top, bottom) =
+            footprint.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), p| (lo.min(p.y), hi.max(p.y)));
         let Some(rows) = centres(top, bottom, self.size[1]).and_then(|rows| tiles(rows, y, height)) else { return };
         let mut previous = *last;
         for &p in footprint {
@@ -130,7 +131,7 @@ impl Bins {
                 self.lists[tile as usize] = (end + lane) as u32;
                 places.push((tile / self.tiles[0]) << 16 | tile % self.tiles[0]);
             }
-            places.resize(groups.len() * LANES, NO_TILE);
+            places.resize(places.len().next_multiple_of(LANES), NO_TILE);
             end += length as usize * LANES;
         }
         // Shorter lists end with entries of the null quad.

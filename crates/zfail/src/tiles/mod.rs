@@ -221,7 +221,12 @@ impl TilePass {
             self.places.truncate(before.2);
             return None;
         }
-        self.groups.extend(self.found.iter().map(|&bins::Group { first, length }| GroupRecord { first, length, light, base }));
+        self.groups.extend(self.found.iter().map(|&bins::Group { first, length }| GroupRecord {
+            first,
+            length,
+            light,
+            base,
+        }));
         let places = &self.places[before.2..];
         let scissor = if base == 0 { around(places, self.size) } else { [0, 0, self.size[0], self.size[1]] };
         self.lights.push(Light { base, scissor });
@@ -249,8 +254,10 @@ impl TilePass {
             layout: &self.count_layout,
             entries: &self.buffers.entries(depth),
         });
-        let mut pass = encoder
-            .begin_compute_pass(&ComputePassDescriptor { label: Some("tile counts"), ..ComputePassDescriptor::default() });
+        let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
+            label: Some("tile counts"),
+            ..ComputePassDescriptor::default()
+        });
         pass.set_pipeline(&self.count);
         pass.set_bind_group(0, &bindings, &[]);
         let [x, y] = buffers::workgroups(self.groups.len());

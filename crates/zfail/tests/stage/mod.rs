@@ -118,7 +118,7 @@ pub fn stencil(setup: &Setup, view: &View, meshes: &[(Soup, DAffine3)], light: L
     Some(read_stencil(&device, &queue, encoder, &texture))
 }
 
-fn draw_depth(
+pub fn draw_depth(
     device: &wgpu::Device,
     pass: &mut wgpu::RenderPass<'_>,
     setup: &Setup,
@@ -177,7 +177,7 @@ fn draw_depth(
 }
 
 /// Reads the stencil aspect; a multisampled one goes through a shader that fetches sample 0.
-fn read_stencil(
+pub fn read_stencil(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
     mut encoder: wgpu::CommandEncoder,
