@@ -24,6 +24,7 @@ mod features;
 mod frame_buffers;
 mod pipelines;
 mod shadows;
+pub mod tiles;
 
 pub use error::Error;
 pub use features::{depth_stencil_format, wanted_features};

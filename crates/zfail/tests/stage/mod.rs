@@ -138,7 +138,7 @@ pub fn draw(
     (read_stencil(device, queue, encoder, &texture), shadows.plan().clone())
 }
 
-fn draw_depth(
+pub fn draw_depth(
     device: &wgpu::Device,
     pass: &mut wgpu::RenderPass<'_>,
     setup: &Setup,
@@ -197,7 +197,7 @@ fn draw_depth(
 }
 
 /// Reads the stencil aspect; a multisampled one goes through a shader that fetches sample 0.
-fn read_stencil(
+pub fn read_stencil(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
     mut encoder: wgpu::CommandEncoder,
