@@ -15,9 +15,10 @@ use crate::shadow_pass::ShadowPass;
 use crate::stats::{FrameStats, LightFigures};
 use crate::targets::{Attributes, Targets};
 use crate::timing::Timer;
-use crate::tone_map::tone_map;
 use crate::verdict_pass::{self, Verdict, VerdictPass};
-use crate::{AovKind, Aovs, Exposure, Gpu, Picture, RenderError, Settings, attribute_outputs, lights, read_back};
+use crate::{
+    AovKind, Aovs, Exposure, Gpu, Picture, RenderError, Settings, attribute_outputs, lights, read_back, tone_map,
+};
 use half::f16;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -105,14 +106,16 @@ impl<'g> Renderer<'g> {
         Ok((Picture { size: targets.size, hdr, rgba8 }, stats))
     }
 
-    /// Renders one frame and waits for the device, but leaves the picture there. With an [`Exposure::Ev`] and without
-    /// blended materials this is cheaper than [`Renderer::picture`] by more than the read-back: no radiance is kept.
+    /// Renders one frame and waits for the device, but leaves the picture there. With an [`Exposure::Ev`], one
+    /// sample and no blended materials this is cheaper than [`Renderer::picture`] by more than the read-back: no radiance is kept.
     ///
     /// # Errors
     /// If the settings do not fit the scene or the device, or the device fails.
     pub fn render(&mut self, view: &View, settings: &Settings) -> Result<FrameStats, RenderError> {
+        // What is blended or averaged has to be radiance.
+        let direct = settings.samples == 1 && !self.scene.draws.blends;
         let known = matches!(settings.exposure, Exposure::Ev(_));
-        let finish = if known && !self.scene.draws.blends { Finish::Forward } else { Finish::Darkroom };
+        let finish = if known && direct { Finish::Forward } else { Finish::Darkroom };
         self.draw(view, settings, finish)
     }
 
@@ -240,9 +243,8 @@ impl<'g> Renderer<'g> {
         let verdicts = shadowed.then(|| targets.verdicts(gpu, layouts).bind_group.clone());
         let color = match finish {
             Finish::Forward => {
-                let (view, resolve_target) = targets.picture(gpu);
-                let [r, g, b] = tone_map(exposed.background.map(|c| c * exposed.exposure)).map(f64::from);
-                cleared(view, [r, g, b, 1.0]).map(|color| wgpu::RenderPassColorAttachment { resolve_target, ..color })
+                let [r, g, b] = exposed.background.map(|c| c * exposed.exposure);
+                cleared(&targets.ldr_view, tone_map::displayed([r, g, b]))
             }
             Finish::Darkroom if added => continued(&targets.hdr(gpu).samples),
             Finish::Darkroom => {
@@ -433,5 +435,83 @@ fn figures_of(kind: &'static str, figures: LightStats, shadow_ms: Option<f64>, l
         scissor: figures.scissor,
         shadow_ms,
         light_ms,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::GpuOptions;
+    use zfail_plan::glam::{DAffine3, DVec3};
+    use zfail_plan::scene::{Instance, Light, LightKind, Material, Mesh, Primitive};
+    use zfail_plan::view::Projection;
+
+    /// A triangle under more than one light, before a background.
+    fn scene(unlit: bool) -> Scene {
+        let material = Material { unlit, base_color: [0.8, 0.3, 0.05, 1.0], metallic: 0.0, ..Material::default() };
+        let mesh = Mesh {
+            positions: vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]],
+            normals: vec![[0.0, 0.0, 1.0]; 3],
+            triangles: vec![[0, 1, 2]],
+            primitives: vec![Primitive { triangles: 0..1, material: Some(0) }],
+            ..Mesh::default()
+        };
+        let light = |x: f64| Light {
+            name: String::new(),
+            kind: LightKind::Point { position: DVec3::new(x, 0.5, 0.7), range: 9.0 },
+            color: [1.0, 0.9, 0.7],
+            intensity: 1.5,
+            excluded: Vec::new(),
+        };
+        let instance =
+            Instance { name: String::new(), mesh: 0, world_from_object: DAffine3::IDENTITY, casts_shadow: true };
+        Scene {
+            meshes: vec![mesh],
+            materials: vec![material],
+            instances: vec![instance],
+            lights: vec![light(-0.5), light(0.5)],
+            ambient: [0.05; 3],
+            background: [0.02, 0.3, 1.7],
+            ..Scene::default()
+        }
+    }
+
+    #[test]
+    fn a_frame_written_directly_is_the_developed_picture() {
+        let gpu = match Gpu::new(&GpuOptions::default()) {
+            Ok(gpu) => gpu,
+            Err(error) => return eprintln!("skipped: {error}"),
+        };
+        let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
+        let world_from_view = DAffine3::from_translation(DVec3::new(0.0, 0.0, 2.5));
+        let view = View { world_from_view, projection, size: [64, 64] };
+        for unlit in [false, true] {
+            let mut renderer = Renderer::new(&gpu, &scene(unlit)).expect("a renderer");
+            let mut direct = |settings: &Settings| {
+                renderer.draw(&view, settings, Finish::Forward).expect("a frame");
+                read_back::texture(&gpu, &renderer.targets.as_ref().expect("targets").ldr).expect("texels")
+            };
+            let settings = Settings { exposure: Exposure::Ev(0.5), ..Settings::default() };
+            let frames = [direct(&settings), direct(&Settings { shadows: false, ..settings.clone() })];
+            let brighter = direct(&Settings { exposure: Exposure::Ev(0.6), ..settings.clone() });
+            let developed = renderer.picture(&view, &settings).expect("a picture").0.rgba8;
+            let difference = |a: &[u8]| a.iter().zip(&developed).map(|(a, b)| a.abs_diff(*b)).max();
+            // Half floats keep 11 bits of radiance.
+            assert!(frames.iter().all(|frame| difference(frame) <= Some(1)), "{:?}", difference(&frames[0]));
+            assert!(difference(&brighter) > Some(1), "the comparison can fail");
+        }
+    }
+
+    #[test]
+    fn many_lights_are_divided() {
+        let whole = |lights: usize, blended| Part { lights: 0..lights, solid: true, blended };
+        assert_eq!(parts(50, false, true), [whole(50, true)]);
+        assert_eq!(parts(32, true, false), [whole(32, false)]);
+        let divided = parts(50, true, true);
+        assert_eq!(divided.iter().map(|p| p.lights.clone()).collect::<Vec<_>>(), [0..32, 32..50, 0..50]);
+        assert_eq!(
+            divided.iter().map(|p| [p.solid, p.blended]).collect::<Vec<_>>(),
+            [[true, false], [true, false], [false, true]]
+        );
     }
 }
