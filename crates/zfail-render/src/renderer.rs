@@ -24,7 +24,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::time::Instant;
 use zfail::{Counting, LightStats};
-use zfail_plan::scene::{Pose, Scene};
+use zfail_plan::scene::{LightKind, Pose, Scene};
 use zfail_plan::view::View;
 
 /// A scene on the device, ready to be rendered from any view.
@@ -136,17 +136,23 @@ impl<'g> Renderer<'g> {
             self.targets = Some(Targets::new(gpu, view.size, samples)?);
         }
 
+        let exposed = Exposed::new(&self.scene, &chosen, settings.exposure, view);
+        let precision = exposed.precision(&self.scene, finish);
+        let kinds: Vec<LightKind> =
+            chosen.iter().map(|&l| lights::effective(&self.scene.lights[l], &precision)).collect();
+        // Positions in `chosen` of the lights that make a difference.
+        let active: Vec<usize> = (0..chosen.len()).filter(|&i| lights::is_visible(&kinds[i], view)).collect();
+
         let start = Instant::now();
         let figures = if settings.shadows {
-            self.scene.plan(gpu, view, &chosen, settings, Counting::Verdict)?
+            self.scene.plan(gpu, view, &chosen, &kinds, settings, Counting::Verdict)?
         } else {
             vec![unplanned(view); chosen.len()]
         };
         let planning_ms = start.elapsed().as_secs_f64() * 1e3;
 
         self.scene.arrange(view);
-        let exposed = Exposed::new(&self.scene, &chosen, settings.exposure, view);
-        let parts = parts(chosen.len(), settings.shadows, self.scene.draws.blends);
+        let parts = parts(active.len(), settings.shadows, self.scene.draws.blends);
         let finish = if parts.len() > 1 { Finish::Darkroom } else { finish };
         let spans = Spans {
             shadows: settings.shadows,
@@ -156,7 +162,7 @@ impl<'g> Renderer<'g> {
         // Several steps would write the same queries.
         self.timer.begin(gpu, if parts.len() > 1 { 0 } else { spans.count() });
         for (number, part) in parts.iter().enumerate() {
-            self.step(view, &chosen, &figures, &exposed, part, number > 0, finish, spans, samples)?;
+            self.step(view, &active, &kinds, &figures, &exposed, part, number > 0, finish, spans, samples)?;
         }
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         if finish == Finish::Darkroom {
@@ -196,7 +202,8 @@ impl<'g> Renderer<'g> {
     fn step(
         &mut self,
         view: &View,
-        chosen: &[usize],
+        active: &[usize],
+        kinds: &[LightKind],
         figures: &[LightStats],
         exposed: &Exposed,
         part: &Part,
@@ -207,17 +214,16 @@ impl<'g> Renderer<'g> {
     ) -> Result<(), RenderError> {
         let gpu = self.gpu;
         let (scene, layouts, timer) = (&self.scene, &self.layouts, &self.timer);
-        let range = part.lights.clone();
-        let records = &exposed.lights[range.clone()];
-        let shading = Shading { lights: records, ..exposed.shading() };
-        let lights = &chosen[range.clone()];
+        let lights = &active[part.lights.clone()];
+        let records: Vec<LightRecord> = lights.iter().map(|&l| exposed.lights[l]).collect();
+        let shading = Shading { lights: &records, ..exposed.shading() };
         self.frame.update(
             gpu,
             layouts,
             view,
             &shading,
             scene.draws.order.iter().map(|&i| &scene.instances[i].world_from_object),
-            |l, slot| lights::reaches(&scene.lights[lights[l]], &scene.instance_bounds[scene.draws.order[slot]]),
+            |l, slot| lights::reaches(&kinds[lights[l]], &scene.instance_bounds[scene.draws.order[slot]]),
         )?;
         let targets = self.targets.as_mut().ok_or_else(no_targets)?;
         let shadowed = spans.shadows && part.solid;
@@ -228,7 +234,7 @@ impl<'g> Renderer<'g> {
             let shadows = &scene.shadows;
             let pass = self.verdicts.entry(samples).or_insert_with(|| VerdictPass::new(gpu, shadows, samples));
             pass.prepare(gpu, layouts, scene);
-            let verdicts = range.map(|light| Verdict {
+            let verdicts = lights.iter().map(|&light| Verdict {
                 light,
                 scissor: Some(figures[light].scissor).filter(|_| figures[light].vertices > 0),
                 span: spans.light(light),
@@ -305,7 +311,8 @@ impl<'g> Renderer<'g> {
                 continue;
             }
             if settings.shadows {
-                self.scene.plan(gpu, view, &chosen, settings, counting)?;
+                let kinds: Vec<LightKind> = chosen.iter().map(|&l| self.scene.lights[l].kind).collect();
+                self.scene.plan(gpu, view, &chosen, &kinds, settings, counting)?;
             }
             for light in 0..chosen.len() {
                 let mut encoder = encoder();
@@ -369,6 +376,19 @@ impl Exposed {
                 Exposure::Auto => 1.0,
                 Exposure::Ev(stops) => (stops.exp2() / pre_exposure).clamp(0.0, f32::MAX),
             },
+        }
+    }
+
+    /// What a picture finished so shows of the scene's lights; each has its share of the error.
+    fn precision(&self, scene: &SceneOnGpu, finish: Finish) -> lights::Precision {
+        let step = match finish {
+            Finish::Forward => lights::DISPLAY_STEP / f64::from(self.exposure),
+            Finish::Darkroom => lights::HALF_FLOAT_STEP,
+        };
+        lights::Precision {
+            step: step / self.lights.len().max(1) as f64,
+            pre_exposure: self.pre_exposure.into(),
+            reflectance: lights::greatest_reflectance(scene.roughness),
         }
     }
 
@@ -443,7 +463,7 @@ mod tests {
     use super::*;
     use crate::GpuOptions;
     use zfail_plan::glam::{DAffine3, DVec3};
-    use zfail_plan::scene::{Instance, Light, LightKind, Material, Mesh, Primitive};
+    use zfail_plan::scene::{Instance, Light, Material, Mesh, Primitive};
     use zfail_plan::view::Projection;
 
     /// A triangle under more than one light, before a background.

@@ -5,7 +5,7 @@ use crate::geometry::MeshBuffers;
 use crate::layouts::Layouts;
 use crate::{Gpu, RenderError, Settings, check, materials};
 use zfail::{Caster, Counting, Frame, LightStats, ShadowLight, Shadows};
-use zfail_plan::scene::{Bounds, Instance, Light, Mesh, Pose, Scene};
+use zfail_plan::scene::{Bounds, Instance, Light, LightKind, Material, Mesh, Pose, Scene};
 use zfail_plan::view::View;
 
 /// Uploaded meshes and materials, registered casters, and the plain data that frames are made from.
@@ -27,6 +27,8 @@ pub struct SceneOnGpu {
     pub background: [f32; 3],
     /// Radiance of the strongest emission.
     pub emission: [f32; 3],
+    /// The least roughness of any material.
+    pub roughness: f64,
     pub shadows: Shadows,
     casters: Vec<Caster>,
     /// By instance.
@@ -79,6 +81,7 @@ impl SceneOnGpu {
             ambient: scene.ambient,
             background: scene.background,
             emission,
+            roughness: scene.materials.iter().map(least_roughness).fold(1.0, f64::min),
             shadows,
             casters,
             caster_of,
@@ -136,12 +139,13 @@ impl SceneOnGpu {
         }
     }
 
-    /// Plans and uploads the volumes of `chosen` lights.
+    /// Plans and uploads the volumes of `chosen` lights, taken as `kinds`.
     pub fn plan(
         &mut self,
         gpu: &Gpu,
         view: &View,
         chosen: &[usize],
+        kinds: &[LightKind],
         settings: &Settings,
         counting: Counting,
     ) -> Result<Vec<LightStats>, RenderError> {
@@ -149,13 +153,16 @@ impl SceneOnGpu {
             .iter()
             .map(|&l| self.lights[l].excluded.iter().filter_map(|&instance| self.caster_of[instance]).collect())
             .collect();
-        let lights: Vec<ShadowLight<'_>> = chosen
-            .iter()
-            .zip(&excluded)
-            .map(|(&l, excluded)| ShadowLight { kind: self.lights[l].kind, excluded })
-            .collect();
+        let lights: Vec<ShadowLight<'_>> =
+            kinds.iter().zip(&excluded).map(|(&kind, excluded)| ShadowLight { kind, excluded }).collect();
         let technique = settings.technique;
         let frame = Frame { view, casters: &self.casters, lights: &lights, technique, counting };
         Ok(self.shadows.prepare(&gpu.device, &gpu.queue, &frame)?)
     }
+}
+
+/// The least roughness of a material's points.
+fn least_roughness(material: &Material) -> f64 {
+    // A texture may hold 0.
+    if material.metallic_roughness_texture.is_some() { 0.0 } else { f64::from(material.roughness) }
 }
