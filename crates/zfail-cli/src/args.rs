@@ -30,6 +30,8 @@ pub enum Command {
     Render(Render),
     /// Show what is in a scene: meshes and how closed they are, lights, cameras, what is not supported.
     Info(Info),
+    /// Measure what frames cost, by technique, with shadows and without.
+    Bench(Bench),
     /// Write the built-in scenes as .glb files with their pictures.
     Gallery(Gallery),
 }
@@ -48,6 +50,8 @@ pub struct Render {
     /// Camera by index or name, in depth-first order of the scene's nodes.
     #[arg(long, value_name = "N|NAME", default_value = "0")]
     pub camera: String,
+    #[command(flatten)]
+    pub moment: Moment,
     /// Let only this light shine; repeat it for several. The ambient light stays, and files keep the numbers that the
     /// lights have in the scene.
     #[arg(long = "light", value_name = "N", value_parser = parse_light)]
@@ -88,6 +92,40 @@ pub struct Info {
     pub json: bool,
 }
 
+/// `zfail bench`
+#[derive(Args, Debug)]
+pub struct Bench {
+    /// .glb or .gltf files, or builtin:NAME; a fixed set of built-in scenes if there is none. The first animation is
+    /// played, as the first camera sees it.
+    #[arg(value_name = "SCENE")]
+    pub scenes: Vec<String>,
+    /// Frames to measure, from the start of the animation on.
+    #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub frames: u32,
+    /// Frames per second of the animation: frame k shows the time k / F, wrapped over its duration.
+    #[arg(long, value_name = "F", default_value = "60", value_parser = parse_fps, allow_negative_numbers = true)]
+    pub fps: f64,
+    /// Size of the frames in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = Size::parse)]
+    pub size: Size,
+    /// Samples per pixel.
+    #[arg(long, value_name = "1|4", default_value = "1", value_parser = parse_samples)]
+    pub samples: u32,
+    /// Compare only these techniques.
+    #[arg(long = "technique", value_name = "A,B", value_delimiter = ',', value_parser = technique_parser())]
+    pub techniques: Vec<Technique>,
+    /// Print JSON instead of a table.
+    #[arg(long)]
+    pub json: bool,
+    /// Instead of frames, measure how planning grows with the number of triangles, up to a million.
+    #[arg(long, conflicts_with_all = ["scenes", "frames", "fps", "size", "samples", "techniques"])]
+    pub scaling: bool,
+    #[command(flatten)]
+    pub device: Device,
+    #[command(flatten)]
+    pub verbosity: Verbosity,
+}
+
 /// `zfail gallery`
 #[derive(Args, Debug)]
 pub struct Gallery {
@@ -112,6 +150,17 @@ pub struct SceneArg {
     /// A .glb or .gltf file, or builtin:NAME.
     #[arg(value_name = "SCENE")]
     pub scene: String,
+}
+
+/// The moment of an animation.
+#[derive(Args, Debug)]
+pub struct Moment {
+    /// Show the scene this many seconds after the start of its animation.
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, allow_negative_numbers = true)]
+    pub time: Option<f64>,
+    /// Animation by index or name; the first one if only --time is given.
+    #[arg(long, value_name = "NAME|N")]
+    pub animation: Option<String>,
 }
 
 /// Which GPU does the work.
@@ -280,6 +329,20 @@ fn parse_exposure(text: &str) -> Result<Exposure, String> {
     }
 }
 
+fn parse_seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds >= 0.0 && seconds.is_finite() => Ok(seconds),
+        _ => Err("it must be a number of seconds, 0 or more".to_owned()),
+    }
+}
+
+fn parse_fps(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(fps) if fps > 0.0 && fps.is_finite() => Ok(fps),
+        _ => Err("it must be a number of frames per second, more than 0".to_owned()),
+    }
+}
+
 fn parse_light(text: &str) -> Result<usize, String> {
     text.parse().map_err(|_| "it must be the number of a light, counted from 0".to_owned())
 }
@@ -328,6 +391,15 @@ mod tests {
             assert!(parse(wrong).is_err(), "{wrong}");
         }
         assert!(parse("dept=d.exr").unwrap_err().contains("did you mean 'depth'"));
+    }
+
+    #[test]
+    fn times() {
+        assert_eq!(parse_seconds("0"), Ok(0.0));
+        assert_eq!(parse_seconds("1.25"), Ok(1.25));
+        for wrong in ["", "-1", "nan", "inf", "1s"] {
+            assert!(parse_seconds(wrong).is_err(), "{wrong}");
+        }
     }
 
     #[test]

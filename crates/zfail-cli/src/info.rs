@@ -14,8 +14,8 @@ use report::Report;
 /// # Errors
 /// If the scene cannot be loaded or standard output cannot be written.
 pub fn run(args: &args::Info) -> Result<(), Error> {
-    let (scene, file) = input::read(&args.scene)?;
-    let report = Report::new(&scene, file)?;
+    let (animated, file) = input::read(&args.scene.scene)?;
+    let report = Report::new(&animated, file)?;
     if args.json {
         let json = serde_json::to_string_pretty(&report)
             .map_err(|e| Error::failed(format!("cannot encode the report: {e}")))?;

@@ -1,28 +1,28 @@
 //! The scene that a command works on, and the camera, lights and GPU that it asks for.
 
-use crate::args::{Device, SceneArg};
+use crate::args::{Device, Moment};
 use crate::error::Error;
 use crate::names;
 use std::path::Path;
 use zfail_plan::scene::{Camera, Scene};
 use zfail_render::{Gpu, GpuOptions};
-use zfail_scene::{FileInfo, Limits, builtin};
+use zfail_scene::{Animated, FileInfo, Limits, builtin};
 
 const BUILTIN: &str = "builtin:";
 
-/// Loads a file as it is, with what it says about itself, or generates a built-in scene.
+/// Loads a file as it is, with its animations and what it says about itself, or generates a built-in scene.
 ///
 /// # Errors
 /// If the file cannot be used, or there is no such built-in scene.
-pub fn read(SceneArg { scene }: &SceneArg) -> Result<(Scene, Option<FileInfo>), Error> {
+pub fn read(scene: &str) -> Result<(Animated, Option<FileInfo>), Error> {
     if let Some(name) = scene.strip_prefix(BUILTIN) {
-        let scene = builtin::scene(name).ok_or_else(|| names::unknown("built-in scene", name, &builtin_names()))?;
+        let scene = builtin::animated(name).ok_or_else(|| names::unknown("built-in scene", name, &builtin_names()))?;
         return Ok((scene, None));
     }
     let path = Path::new(scene);
-    match zfail_scene::load_with_info(path, &Limits::default()) {
+    match zfail_scene::load_animated(path, &Limits::default()) {
         Ok((scene, info)) => Ok((scene, Some(info))),
-        Err(e) if !path.exists() && builtin_names().contains(&scene.as_str()) => {
+        Err(e) if !path.exists() && builtin_names().contains(&scene) => {
             Err(Error::failed(format!("{}; the built-in scene of that name is '{BUILTIN}{scene}'", chain(&e))))
         }
         Err(e) => Err(Error::failed(chain(&e))),
@@ -33,11 +33,34 @@ pub fn read(SceneArg { scene }: &SceneArg) -> Result<(Scene, Option<FileInfo>), 
 ///
 /// # Errors
 /// As [`read`].
-pub fn complete(scene: &SceneArg) -> Result<Scene, Error> {
-    let (mut scene, file) = read(scene)?;
+pub fn complete(scene: &str) -> Result<Animated, Error> {
+    let (mut animated, file) = read(scene)?;
     if file.is_some() {
-        zfail_scene::complete(&mut scene);
+        zfail_scene::complete(&mut animated.scene);
     }
+    Ok(animated)
+}
+
+/// The scene at the moment that `--time` and `--animation` ask for: of the first animation unless one is named, at
+/// its start unless a time is given, and at rest if neither is.
+///
+/// # Errors
+/// If there is no such animation.
+pub fn at_moment(animated: Animated, moment: &Moment) -> Result<Scene, Error> {
+    let animation = match (&moment.animation, moment.time) {
+        (None, None) => return Ok(animated.scene),
+        (Some(wanted), _) => {
+            let names: Vec<&str> = animated.animations.iter().map(|animation| animation.name.as_str()).collect();
+            names::index_of("animation", wanted, &names)?
+        }
+        (None, Some(_)) => 0,
+    };
+    let pose = animated.pose(animation, moment.time.unwrap_or(0.0));
+    let mut scene = animated.scene;
+    if animated.animations.is_empty() {
+        scene.notices.push("the scene has no animation; --time changes nothing".into());
+    }
+    scene.set_pose(&pose);
     Ok(scene)
 }
 

@@ -4,6 +4,7 @@
 //! done, 1 for failed, 2 for wrong usage.
 
 mod args;
+mod bench;
 mod console;
 mod contact_sheet;
 mod encode;
@@ -39,6 +40,7 @@ fn run(command: &Command) -> Result<(), error::Error> {
     match command {
         Command::Render(args) => render::run(args),
         Command::Info(args) => info::run(args),
+        Command::Bench(args) => bench::run(args),
         Command::Gallery(args) => gallery::run(args),
     }
 }

@@ -24,6 +24,11 @@ fn json_states_the_facts_of_the_small_scene() {
     assert_eq!(kinds, ["directional", "point", "spot"]);
     let cameras: Vec<_> = report["cameras"].as_array().unwrap().iter().map(|camera| camera["name"].clone()).collect();
     assert_eq!(cameras, ["above", "aside"]);
+    let animations = serde_json::json!([
+        { "name": "glide", "duration": 2.0, "moves": true },
+        { "name": "sunset", "duration": 2.0, "moves": true },
+    ]);
+    assert_eq!(report["animations"], animations);
 }
 
 #[test]
@@ -37,6 +42,7 @@ fn text_names_everything_that_can_be_chosen() {
         "       casts double: 4 triangles in 2 parts",
         "    1  'lamp': point at (1.5 3 0), 40 cd, colour (1 1 1)",
         "    1  'aside': perspective at (0 2 8) towards (0 0 -1), 51.6 degrees high",
+        "animations: 2\n    0  'glide': 2.000 s\n    1  'sunset': 2.000 s\n",
         "materials: 1 (1 opaque, 0 mask, 0 blend)",
     ] {
         assert!(text.contains(line), "'{line}' is not in:\n{text}");

@@ -59,6 +59,35 @@ fn shadows_darken_and_no_shadows_does_not() {
 }
 
 #[test]
+fn time_moves_what_is_animated() {
+    if !has_gpu() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    small_scene(folder.path());
+    let radiance = |file: &str, more: &[&str]| {
+        let args = [&["render", "small.gltf", "-o", file, "--exposure", "0"][..], &SIZE, more].concat();
+        let run = zfail(folder.path(), &args).ok();
+        assert_eq!(run.stderr, "");
+        open(&folder.path().join(file)).into_rgb32f().into_raw()
+    };
+    let rest = radiance("rest.exr", &[]);
+    assert_eq!(radiance("a.exr", &["--time", "0"]), rest, "the animation begins at rest");
+    let glided = radiance("b.exr", &["--time", "2"]);
+    assert_ne!(glided, rest);
+    assert_eq!(radiance("c.exr", &["--time", "9", "--animation", "0"]), glided, "the last key holds");
+    let dusk = radiance("d.exr", &["--time", "2", "--animation", "sunset"]);
+    assert!(dusk != rest && dusk != glided);
+    assert_eq!(radiance("e.exr", &["--time", "1.9", "--animation", "sunset"]), rest, "a step");
+    assert_eq!(radiance("f.exr", &["--animation", "sunset"]), rest, "from its start");
+
+    let still = ["render", "builtin:open", "-o", "open.png", "--size", "16x9"];
+    assert_eq!(zfail(folder.path(), &still).ok().stderr, "");
+    let run = zfail(folder.path(), &[&still[..], &["--time", "1"]].concat()).ok();
+    assert_eq!(run.stderr, "zfail: note: the scene has no animation; --time changes nothing\n");
+}
+
+#[test]
 fn masks_are_named_after_the_lights_of_the_file() {
     if !has_gpu() {
         return;

@@ -31,6 +31,11 @@ fn wrong_usage_is_one_line_and_exit_code_2() {
         (&["render", "small.gltf", "-o", "a.png", "--light", "3"], &["'3'", "0 'sun'", "1 'lamp'", "2 'torch'"]),
         (&["render", "small.gltf", "-o", "a.png", "--camera", "abov"], &["did you mean 'above'", "1 'aside'"]),
         (&["render", "small.gltf", "-o", "a.png", "--camera", "2"], &["'2'", "0 'above'", "1 'aside'"]),
+        (&["render", "small.gltf", "-o", "a.png", "--time", "-1"], &["--time"]),
+        (&["render", "small.gltf", "-o", "a.png", "--time", "soon"], &["number of seconds"]),
+        (&["render", "small.gltf", "-o", "a.png", "--animation", "glid"], &["did you mean 'glide'", "0 'glide'"]),
+        (&["render", "small.gltf", "-o", "a.png", "--time", "1", "--animation", "2"], &["'2'", "1 'sunset'"]),
+        (&["render", "builtin:open", "-o", "a.png", "--animation", "0"], &["animation '0'", "there are: none"]),
         (&["render", "small.gltf", "-o", "a.png", "--aov", "shadow"], &["KIND=PATH"]),
         (&["render", "small.gltf", "-o", "a.png", "--aov", "dept=d.exr"], &["did you mean 'depth'", "albedo"]),
         (&["render", "small.gltf", "-o", "a.png", "--aov", "depth=d.png"], &["depth", ".exr"]),
@@ -41,6 +46,14 @@ fn wrong_usage_is_one_line_and_exit_code_2() {
         (&["info", "small.gltf", "other.gltf"], &["other.gltf"]),
         (&["info", "builtin:"], &["there are: "]),
         (&["gallery"], &["DIR"]),
+        (&["bench", "builtin:nowhere"], &["built-in scene 'nowhere'", "there are: "]),
+        (&["bench", "--frames", "0"], &["--frames", "0"]),
+        (&["bench", "--fps", "0"], &["frames per second"]),
+        (&["bench", "--size", "12"], &["WIDTHxHEIGHT"]),
+        (&["bench", "--samples", "2"], &["1 or 4"]),
+        (&["bench", "--technique", "auto,everit"], &["everit", "everitt-kilgard"]),
+        (&["bench", "--scaling", "builtin:open"], &["--scaling", "SCENE"]),
+        (&["bench", "--scaling", "--frames", "9"], &["--scaling", "--frames"]),
     ];
     small_scene(folder.path());
     for (args, words) in cases {
@@ -124,6 +137,8 @@ fn help_lists_every_option_of_the_contract() {
             "-o, --output <OUT>",
             "--size <WxH>",
             "--camera <N|NAME>",
+            "--time <SECONDS>",
+            "--animation <NAME|N>",
             "--light <N>",
             "--samples <1|4>",
             "--technique <NAME>",
@@ -138,7 +153,7 @@ fn help_lists_every_option_of_the_contract() {
         ]
     );
     let overview = zfail(folder.path(), &["--help"]).ok().stdout;
-    for word in ["render", "info", "gallery"] {
+    for word in ["render", "info", "bench", "gallery"] {
         assert!(overview.contains(word), "{overview}");
     }
     assert!(zfail(folder.path(), &["--version"]).ok().stdout.starts_with("zfail 0."));

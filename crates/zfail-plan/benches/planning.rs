@@ -76,7 +76,8 @@ fn plan(c: &mut Criterion) {
                     view: &view,
                     casters: &casters,
                     lights: &lights,
-                    technique: Technique::Auto,
+                    receivers: &[],
+                    measures: Technique::Auto.into(),
                     counting: Counting::Verdict,
                 };
                 planner.plan(&frame).map(|plan| plan.draws.len()).expect("plan")

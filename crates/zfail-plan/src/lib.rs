@@ -9,6 +9,7 @@
 //! destination-from-source (`world_from_object`) and are `f64` until the last step before the GPU.
 
 pub mod casting;
+pub mod convex;
 pub mod plan;
 pub mod scene;
 pub mod scissor;

@@ -97,6 +97,12 @@ impl View {
         DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose()
     }
 
+    /// World directions relative to the eye, homogeneous, to clip space.
+    #[must_use]
+    pub fn clip_from_relative(&self) -> DMat4 {
+        self.clip_from_view() * DMat4::from_mat3(self.world_from_view.matrix3.transpose())
+    }
+
     /// Object to view space, composed in f64.
     #[must_use]
     pub fn view_from_object(&self, world_from_object: &DAffine3) -> DAffine3 {

@@ -74,12 +74,33 @@ pub const fn far(vertex: u32) -> u32 {
     vertex << 1 | 1
 }
 
-/// Appends the volume of weights `c` to `indices`. The light cap is drawn by `cap` instead, the same chain with the
-/// weights of coincident triangles gathered on one of them ([`cap_weights`]). With `converging` sides all extruded vertices
-/// are one point, as the parallel rays of a directional light meet at infinity.
+/// Appends the whole volume of weights `c` to `indices`, its dark cap made of extruded triangles. The light cap is drawn by
+/// `cap` instead, the same chain with the weights of coincident triangles gathered on one of them ([`cap_weights`]). With
+/// `converging` sides all extruded vertices are one point, as the parallel rays of a directional light meet at infinity.
 pub fn build(topology: &Topology, c: &[i8], cap: &[i8], converging: bool, indices: &mut Vec<u32>) -> Volume {
     let mark = |indices: &Vec<u32>| indices.len() as u32;
     let start = mark(indices);
+    sides(topology, c, converging, indices);
+    let sides = start..mark(indices);
+    if !converging {
+        dark_cap(topology, c, indices);
+    }
+    let dark_cap = sides.end..mark(indices);
+    light_cap(topology, cap, 1, |_| true, indices);
+    let light_cap_range = dark_cap.end..mark(indices);
+    light_cap(topology, cap, -1, |_| true, indices);
+    let light_cap_reversed = light_cap_range.end..mark(indices);
+    Volume { sides, dark_cap, light_cap: light_cap_range, light_cap_reversed }
+}
+
+/// Indices of one side: a quad, or where sides converge a triangle. The first two are the edge's vertices.
+#[must_use]
+pub const fn side_len(converging: bool) -> usize {
+    if converging { 3 } else { 6 }
+}
+
+/// Appends a side for every silhouette edge of weights `c`, as many as its multiplicity.
+pub fn sides(topology: &Topology, c: &[i8], converging: bool, indices: &mut Vec<u32>) {
     topology.boundary(c, |[lo, hi], m| {
         // The cap runs along the edge one way, the side has to run the other way.
         let (a, b) = if m > 0 { (lo, hi) } else { (hi, lo) };
@@ -91,30 +112,46 @@ pub fn build(topology: &Topology, c: &[i8], cap: &[i8], converging: bool, indice
             }
         }
     });
-    let sides = start..mark(indices);
+}
 
-    if !converging {
-        for (&[x, y, z], &weight) in topology.triangles.iter().zip(c) {
-            match weight {
-                0 => {}
-                w if w > 0 => indices.extend([far(x), far(z), far(y)]),
-                _ => indices.extend([far(x), far(y), far(z)]),
-            }
+/// Appends the casting triangles extruded to infinity: the dark cap that closes any volume.
+pub fn dark_cap(topology: &Topology, c: &[i8], indices: &mut Vec<u32>) {
+    for (&[x, y, z], &weight) in topology.triangles.iter().zip(c) {
+        match weight {
+            0 => {}
+            w if w > 0 => indices.extend([far(x), far(z), far(y)]),
+            _ => indices.extend([far(x), far(y), far(z)]),
         }
     }
-    let dark_cap = sides.end..mark(indices);
+}
 
-    let mut draw_cap = |sign: i8| {
-        for (&[x, y, z], &weight) in topology.triangles.iter().zip(cap) {
-            for _ in 0..(weight * sign).max(0) {
+/// Appends a dark cap of one triangle per side, from the first silhouette vertex to every edge of the quads
+/// `indices[sides]` (McGuire et al. 2003, section 6).
+///
+/// Closed by the same edges as [`dark_cap`], it can differ from that by whole spheres at infinity. It does not where all
+/// directions from the light to the caster lie in one open hemisphere: where the light is strictly outside of the
+/// caster's convex hull.
+pub fn dark_fan(sides: Range<usize>, indices: &mut Vec<u32>) {
+    let Some(&first) = indices.get(sides.start).filter(|_| !sides.is_empty()) else { return };
+    let apex = first >> 1;
+    for side in sides.step_by(side_len(false)) {
+        let (b, a) = (indices[side] >> 1, indices[side + 1] >> 1);
+        if a != apex && b != apex {
+            indices.extend([far(apex), far(b), far(a)]);
+        }
+    }
+}
+
+/// Appends the chosen casting triangles in place, those whose weight has the sign of `sign`, as often as they count.
+pub fn light_cap(topology: &Topology, cap: &[i8], sign: i8, chosen: impl Fn(usize) -> bool, indices: &mut Vec<u32>) {
+    for (t, (&[x, y, z], &weight)) in topology.triangles.iter().zip(cap).enumerate() {
+        let times = (weight * sign).max(0);
+        if times > 0 && chosen(t) {
+            for _ in 0..times {
                 indices.extend([near(x), near(y), near(z)]);
             }
         }
-        mark(indices)
-    };
-    let light_cap = dark_cap.end..draw_cap(1);
-    let light_cap_reversed = light_cap.end..draw_cap(-1);
-    Volume { sides, dark_cap, light_cap, light_cap_reversed }
+    }
 }
 
 /// Which of each group of twins is visible to the homogeneous `eye` (object space), if either is: the one whose front

@@ -77,7 +77,14 @@ fn plan(meshes: &[Topology], light: LightKind, counting: Counting) -> FramePlan 
     let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
     let view = View { world_from_view: DAffine3::IDENTITY, projection, size: [64, 64] };
     let lights = [ShadowLight { kind: light, excluded: &[] }];
-    let frame = Frame { view: &view, casters: &casters, lights: &lights, technique: Technique::Auto, counting };
+    let frame = Frame {
+        view: &view,
+        casters: &casters,
+        lights: &lights,
+        receivers: &[],
+        measures: Technique::Auto.into(),
+        counting,
+    };
     let mut planner = Planner::new();
     planner.plan(&frame).unwrap();
     // Planning the same frame again changes nothing.
@@ -127,8 +134,8 @@ fn a_change_of_projection_keeps_deep_stacks_divided() {
         Projection::Perspective { yfov: 1.0, near: 0.1, far: None },
     ] {
         let view = View { world_from_view: DAffine3::IDENTITY, projection, size: [64, 64] };
-        let (technique, counting) = (Technique::Auto, Counting::Verdict);
-        let frame = Frame { view: &view, casters: &casters, lights: &lights, technique, counting };
+        let (measures, counting) = (Technique::Auto.into(), Counting::Verdict);
+        let frame = Frame { view: &view, casters: &casters, lights: &lights, receivers: &[], measures, counting };
         let batches = planner.plan(&frame).unwrap().lights[0].batches.len();
         assert!(batches >= 1000 / 120, "{projection:?}: {batches}");
     }

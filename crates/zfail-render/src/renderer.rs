@@ -236,7 +236,7 @@ impl<'g> Renderer<'g> {
             pass.prepare(gpu, layouts, scene);
             let verdicts = lights.iter().map(|&light| Verdict {
                 light,
-                scissor: Some(figures[light].scissor).filter(|_| figures[light].vertices > 0),
+                scissor: Some(figures[light].scissor).filter(|_| figures[light].has_shadow()),
                 span: spans.light(light),
             });
             let verdict_view = &targets.verdicts(gpu, layouts).view;
@@ -443,7 +443,7 @@ fn figures_of(kind: &'static str, figures: LightStats, shadow_ms: Option<f64>, l
     LightFigures {
         kind,
         casters: figures.casters,
-        culled: figures.culled,
+        culled: figures.reasons().map(|(reason, count)| (reason.name(), count)).collect(),
         cases: figures.cases,
         triangles: crate::TriangleFigures {
             sides: figures.triangles.sides,

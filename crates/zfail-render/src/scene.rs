@@ -48,11 +48,12 @@ impl SceneOnGpu {
                 continue;
             }
             meshes.push(Some(MeshBuffers::new(gpu, mesh)?));
+            let surface = |t| scene.triangle_surface(m, t);
             let casts = |t| scene.triangle_casts(m, t);
             let casting =
                 scene.instances.iter().any(|i| i.mesh == m && i.casts_shadow) && (0..mesh.triangles.len()).any(casts);
             ids.push(if casting {
-                Some(shadows.add_mesh(&gpu.device, &gpu.queue, &mesh.positions, &mesh.triangles, casts)?)
+                Some(shadows.add_mesh(&gpu.device, &gpu.queue, &mesh.positions, &mesh.triangles, surface)?)
             } else {
                 None
             });
@@ -155,9 +156,10 @@ impl SceneOnGpu {
             .collect();
         let lights: Vec<ShadowLight<'_>> =
             kinds.iter().zip(&excluded).map(|(&kind, excluded)| ShadowLight { kind, excluded }).collect();
-        let technique = settings.technique;
-        let frame = Frame { view, casters: &self.casters, lights: &lights, technique, counting };
-        Ok(self.shadows.prepare(&gpu.device, &gpu.queue, &frame)?)
+        let (measures, receivers) = (settings.technique.measures(), &[self.bounds]);
+        let frame = Frame { view, casters: &self.casters, lights: &lights, receivers, measures, counting };
+        self.shadows.prepare(&gpu.device, &gpu.queue, &frame)?;
+        Ok((0..chosen.len()).map(|light| self.shadows.stats(light)).collect())
     }
 }
 

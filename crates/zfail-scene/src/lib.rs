@@ -1,13 +1,16 @@
 //! Scenes for zfail: glTF 2.0 files and generated ones.
 //!
 //! In: a `.glb` or `.gltf` file. Out: a [`zfail_plan::scene::Scene`] and the notices about what was repaired or left
-//! out. [`complete`] adds the light and the camera that a file may lack.
+//! out; with [`load_animated`] also its animations, as poses at any time. [`complete`] adds the light and the camera
+//! that a file may lack.
 
+mod animate;
 pub mod builtin;
 mod complete;
 mod placement;
 pub mod read;
 pub mod write;
 
+pub use animate::{Animated, Animation};
 pub use complete::complete;
-pub use read::{FileInfo, Limits, LoadError, load, load_with, load_with_info};
+pub use read::{FileInfo, Limits, LoadError, load, load_animated, load_with, load_with_info};

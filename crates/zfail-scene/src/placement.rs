@@ -3,8 +3,8 @@
 //! In: meshes and f64 transforms. Out: meshes whose coordinates lie near their own origin, and the f64 translation
 //! that puts them back, so that a light brought into object space keeps all its digits wherever the mesh stands.
 
-use glam::{DAffine3, DMat3, DVec3};
-use zfail_plan::scene::{Bounds, Mesh};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+use zfail_plan::scene::{Bounds, LightKind, Mesh};
 
 /// What a linear map does to volumes, judged relative to its own scale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +42,44 @@ pub(crate) fn rank(m: &DMat3) -> Rank {
     } else {
         Rank::Full
     }
+}
+
+/// `m` itself if it is invertible with room to spare, otherwise a matrix near it that is: a flattened direction gets
+/// a millionth of the greatest extent, and what would be a line or a point is so small that nothing can be seen of it.
+pub(crate) fn invertible(m: &DMat3) -> DMat3 {
+    /// Of a mesh that vanishes; and the greatest matrix that counts as nothing.
+    const NOTHING: f64 = 1e-9;
+    /// Thickness over extent; enough for [`Rank::Full`].
+    const THIN: f64 = 1e-6;
+    if rank(m) == Rank::Full {
+        return *m;
+    }
+    let mut columns = [m.x_axis, m.y_axis, m.z_axis];
+    let extent = columns.iter().map(|c| c.length()).fold(0.0, f64::max);
+    if extent < NOTHING {
+        return DMat3::IDENTITY * NOTHING;
+    }
+    // Gram-Schmidt, the longest remainder first; a column that brings nothing new gets the thickness.
+    let mut rest = columns;
+    let mut axes: Vec<DVec3> = Vec::with_capacity(3);
+    let mut left = vec![0, 1, 2];
+    while let Some(at) = (0..left.len()).max_by(|&a, &b| rest[left[a]].length().total_cmp(&rest[left[b]].length())) {
+        let column = left.swap_remove(at);
+        let axis = if rest[column].length() >= THIN * extent {
+            rest[column].normalize()
+        } else {
+            let fresh = match axes[..] {
+                [a, b, ..] => a.cross(b),
+                [a] => a.any_orthonormal_vector(),
+                [] => DVec3::X,
+            };
+            columns[column] += fresh * (THIN * extent);
+            fresh
+        };
+        rest.iter_mut().for_each(|r| *r -= axis * axis.dot(*r));
+        axes.push(axis);
+    }
+    DMat3::from_cols(columns[0], columns[1], columns[2])
 }
 
 fn frobenius(m: &DMat3) -> f64 {
@@ -118,6 +156,46 @@ pub(crate) fn flatten(mesh: &Mesh, world_from_object: &DAffine3) -> (Mesh, DVec3
     (flat, origin)
 }
 
+/// Whether all entries are finite and so small that their products and squares are finite too.
+pub(crate) fn is_moderate(m: &DAffine3) -> bool {
+    m.to_cols_array().iter().all(|x| x.abs() <= 1e30)
+}
+
+/// `q` at unit length. One that is a unit quaternion but for rounding stays bit for bit.
+pub(crate) fn unit_quaternion(q: DQuat) -> Option<DQuat> {
+    let length = q.length();
+    if (length - 1.0).abs() <= 4.0 * f64::EPSILON {
+        return Some(q);
+    }
+    (length.is_finite() && length > 1e-12).then(|| q / length)
+}
+
+/// Rotation and translation of `m`, without scale and shear. It keeps the way the camera looks and, as near as can be,
+/// its up; a mirrored camera has left and right exchanged, since a view space is right-handed.
+pub(crate) fn rigid(m: &DAffine3) -> DAffine3 {
+    let back = m.matrix3.z_axis.try_normalize().unwrap_or(DVec3::Z);
+    let up = m.matrix3.y_axis.reject_from_normalized(back);
+    let up = up.try_normalize().unwrap_or_else(|| back.any_orthonormal_vector());
+    DAffine3 { matrix3: DMat3::from_cols(up.cross(back), up, back), translation: m.translation }
+}
+
+/// Where a light's node stands; it shines along its -z axis.
+pub(crate) fn light_placement(kind: &LightKind) -> DAffine3 {
+    let (translation, direction) = match *kind {
+        LightKind::Point { position, .. } => (position, DVec3::NEG_Z),
+        LightKind::Spot { position, direction, .. } => (position, direction),
+        LightKind::Directional { direction } => (DVec3::ZERO, direction),
+    };
+    let matrix3 = if direction == DVec3::NEG_Z {
+        DMat3::IDENTITY
+    } else {
+        let (x, y) = direction.any_orthonormal_pair();
+        // The pair is right-handed with the direction, the axes must be with its opposite.
+        DMat3::from_cols(y, x, -direction)
+    };
+    DAffine3 { matrix3, translation }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -184,6 +262,36 @@ mod tests {
         }
         assert_eq!(rank(&DMat3::ZERO), Rank::Line);
         assert_eq!(rank(&(DMat3::IDENTITY * 1e-100)), Rank::Line);
+    }
+
+    #[test]
+    fn singular_matrices_become_invertible_and_others_stay() {
+        let turn = DMat3::from_euler(glam::EulerRot::XYZ, 0.3, 1.0, -2.0);
+        for scale in [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 3.0, 1.0], [1e-12, 1.0, 1.0], [1e-200; 3], [1e9, 1e9, 0.0]] {
+            for m in [turn * DMat3::from_diagonal(scale.into()), DMat3::from_diagonal(scale.into()) * turn] {
+                let near = invertible(&m);
+                assert_eq!(rank(&near), Rank::Full, "{scale:?}");
+                let extent = scale[0].max(scale[1]).max(scale[2]);
+                assert!(near.abs_diff_eq(m, 2e-6 * extent + 1e-9), "{scale:?}: {near} is far from {m}");
+                assert!(near.inverse().is_finite());
+            }
+        }
+        for m in [turn, DMat3::from_diagonal(DVec3::new(1.0, -1.0, 1e-5)), DMat3::IDENTITY * 1e-30] {
+            assert_eq!(invertible(&m), m);
+        }
+    }
+
+    #[test]
+    fn cameras_become_rigid() {
+        let turn = DMat3::from_euler(glam::EulerRot::YXZ, 0.7, -0.3, 0.1);
+        for scale in [DVec3::ONE, DVec3::new(-1.0, 1.0, 1.0), DVec3::new(2.0, 1e-4, 3.0), DVec3::new(0.0, 1.0, 1.0)] {
+            let m = DAffine3 { matrix3: turn * DMat3::from_diagonal(scale), translation: DVec3::ONE };
+            let r = rigid(&m);
+            assert!((r.matrix3 * r.matrix3.transpose()).abs_diff_eq(DMat3::IDENTITY, 1e-12), "{scale}");
+            assert!((r.matrix3.determinant() - 1.0).abs() < 1e-12, "{scale}: right-handed");
+            assert!(r.matrix3.z_axis.distance(turn.z_axis) < 1e-12 && r.matrix3.y_axis.distance(turn.y_axis) < 1e-12);
+        }
+        assert!(rigid(&DAffine3::from_scale(DVec3::ZERO)).is_finite());
     }
 
     #[test]

@@ -51,33 +51,43 @@ impl FrameBuffers {
         self.records.extend(plan.draws.iter().map(record));
 
         let limits = device.limits();
-        write(device, queue, &mut self.indices, &plan.indices, BufferUsages::INDEX, limits.max_buffer_size)?;
+        let indices: &[u8] = bytemuck::cast_slice(&plan.indices);
+        let size = indices.len() as u64;
+        if grow(device, &mut self.indices, "volume indices", size, BufferUsages::INDEX, limits.max_buffer_size)? {
+            queue.write_buffer(&self.indices, 0, indices);
+        } else {
+            // Everything else is there from earlier frames.
+            for range in &plan.changed {
+                let bytes = bytemuck::cast_slice(&plan.indices[range.start as usize..range.end as usize]);
+                queue.write_buffer(&self.indices, u64::from(range.start) * size_of::<u32>() as u64, bytes);
+            }
+        }
+        let records: &[u8] = bytemuck::cast_slice(&self.records);
         let limit = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
-        write(device, queue, &mut self.draws, &self.records, BufferUsages::STORAGE, limit)
+        let size = records.len() as u64;
+        let new = grow(device, &mut self.draws, "volume draws", size, BufferUsages::STORAGE, limit)?;
+        if !records.is_empty() {
+            queue.write_buffer(&self.draws, 0, records);
+        }
+        Ok(new)
     }
 }
 
-/// Writes `data`, into a larger buffer if need be; returns whether it is a new one.
-fn write<T: Pod>(
+/// Makes `target` a larger buffer if `size` bytes do not fit; returns whether it is a new one.
+fn grow(
     device: &Device,
-    queue: &Queue,
     target: &mut Buffer,
-    data: &[T],
+    what: &'static str,
+    size: u64,
     usage: BufferUsages,
     limit: u64,
 ) -> Result<bool, Error> {
-    let bytes: &[u8] = bytemuck::cast_slice(data);
-    let size = bytes.len() as u64;
-    let what = if usage.contains(BufferUsages::INDEX) { "volume indices" } else { "volume draws" };
     if size > limit {
         return Err(Error::TooLarge { what, bytes: size, limit });
     }
     let grow = size > target.size();
     if grow {
         *target = buffer(device, what, usage, (size + size / 2).min(limit) & !3);
-    }
-    if !bytes.is_empty() {
-        queue.write_buffer(target, 0, bytes);
     }
     Ok(grow)
 }

@@ -5,7 +5,7 @@
 //! light the surfaces with [`lit_stencil`] and stencil reference 0: a sample passes exactly where a ray from the visible
 //! point reaches the light. There is no bias, no resolution and no filter to tune.
 //!
-//! The algorithm is the z-fail counting of Everitt & Kilgard 2002, on any mesh (see [`zfail_plan`]).
+//! The algorithms are those of Everitt & Kilgard 2002 and McGuire et al. 2003, on any mesh (see [`zfail_plan`]).
 //!
 //! # What a host renderer has to respect
 //! - Depth is reversed and comes from [`View::clip_from_object`], one `f32` matrix per object, applied in the vertex
@@ -24,13 +24,16 @@ mod features;
 mod frame_buffers;
 mod pipelines;
 mod shadows;
+pub mod tiles;
 
 pub use error::Error;
 pub use features::{depth_stencil_format, wanted_features};
 pub use pipelines::{Pipelines, Target, lit_stencil};
 pub use shadows::{Caster, Frame, MeshId, Shadows};
-pub use zfail_plan::plan::{Counting, LightStats, ShadowLight, Technique, Triangles, UnknownTechnique};
-pub use zfail_plan::scene::LightKind;
-pub use zfail_plan::topology::{Topology, TopologyError};
+pub use zfail_plan::plan::{
+    Counting, Culled, FramePlan, LightStats, Measures, ShadowLight, Technique, Triangles, UnknownTechnique, ZPass,
+};
+pub use zfail_plan::scene::{Bounds, LightKind};
+pub use zfail_plan::topology::{Surface, Topology, TopologyError};
 pub use zfail_plan::view::{Projection, View};
 pub use zfail_plan::{self, glam};

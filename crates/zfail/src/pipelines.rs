@@ -1,11 +1,12 @@
 //! The render pipelines of shadow determination: stencil operations and nothing else.
 //!
-//! In: the formats of the host's pass. Out: pipelines for volumes (both windings, plain and batched counting, with and
-//! without depth clamping) and for folding a batch's counts into the sticky bit.
+//! In: the formats of the host's pass. Out: pipelines for volumes (z-pass and z-fail, both windings, plain and batched
+//! counting, with and without depth clamping) and for folding a batch's counts into the sticky bit.
 //!
 //! z-fail (Bilodeau & Songy 1999; Carmack 2000): where a face of the volume lies at or behind the visible surface, a
 //! front face decrements and a back face increments, wrapping, so that their order does not matter. Front and back are
-//! told apart in one draw (E&K 2002, section 4.1, "two-sided stencil testing").
+//! told apart in one draw (E&K 2002, section 4.1, "two-sided stencil testing"). z-pass (Heidmann 1991) does the opposite
+//! where a face lies in front of the visible surface. Both test depth strictly: what coincides with the surface is behind.
 
 use wgpu::{
     BindGroupLayout, ColorTargetState, ColorWrites, CompareFunction, DepthStencilState, Device, Features,
@@ -40,10 +41,14 @@ const BATCH_MASK: u32 = 0x7f;
 /// Pipelines for one [`Target`].
 #[derive(Debug)]
 pub struct Pipelines {
+    /// Counting in front of the visible surface: nothing there is near the far plane.
+    z_pass: Set,
     /// For everything that lies before the far plane, be it at infinity.
     plain: Set,
     /// For what a finite far plane would clip: depth is clamped.
     clamped: Set,
+    /// Sets every count to the reference.
+    pub(crate) start: RenderPipeline,
     pub(crate) fold: RenderPipeline,
 }
 
@@ -53,6 +58,8 @@ type Set = [[RenderPipeline; 2]; 2];
 /// What a draw needs of its pipeline.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Variant {
+    /// Counts fragments in front of the visible surface.
+    pub z_pass: bool,
     /// The view's far plane is not at infinity.
     pub finite: bool,
     /// Counts go to seven bits only.
@@ -65,26 +72,34 @@ impl Pipelines {
     pub(crate) fn new(device: &Device, layout: &BindGroupLayout, module: &ShaderModule, target: &Target<'_>) -> Self {
         let maker = Maker { device, layout, module, target };
         Self {
-            plain: maker.set("volume", None, false),
+            z_pass: maker.set("volume", None, false, true),
+            plain: maker.set("volume", None, false, false),
             clamped: if device.features().contains(Features::DEPTH_CLIP_CONTROL) {
-                maker.set("volume", None, true)
+                maker.set("volume", None, true, false)
             } else {
-                maker.set("clamped_volume", Some("clamped_depth"), false)
+                maker.set("clamped_volume", Some("clamped_depth"), false, false)
             },
+            start: maker.start(),
             fold: maker.fold(),
         }
     }
 
     /// The pipeline for sides and dark caps.
     pub(crate) fn extruded(&self, v: Variant) -> &RenderPipeline {
-        let set = if v.finite { &self.clamped } else { &self.plain };
+        let set = match (v.z_pass, v.finite) {
+            // Clamped, volumes in front of the near plane would count; clipped at the far plane, nothing is missed.
+            (true, _) => &self.z_pass,
+            (false, true) => &self.clamped,
+            (false, false) => &self.plain,
+        };
         &set[usize::from(v.batched)][usize::from(v.clockwise)]
     }
 
     /// The pipeline for light caps. They need the depth of the depth pass to the last bit, so they are clipped as it is,
     /// and no fragment shader may compute it; like the surfaces they belong to, none lies beyond the far plane.
     pub(crate) fn light_cap(&self, v: Variant) -> &RenderPipeline {
-        &self.plain[usize::from(v.batched)][usize::from(v.clockwise)]
+        let set = if v.z_pass { &self.z_pass } else { &self.plain };
+        &set[usize::from(v.batched)][usize::from(v.clockwise)]
     }
 }
 
@@ -96,19 +111,23 @@ struct Maker<'a> {
 }
 
 impl Maker<'_> {
-    fn set(&self, vertex: &str, fragment: Option<&str>, unclipped_depth: bool) -> Set {
+    fn set(&self, vertex: &str, fragment: Option<&str>, unclipped_depth: bool, z_pass: bool) -> Set {
+        let (up, down) = (StencilOperation::IncrementWrap, StencilOperation::DecrementWrap);
+        let (front, back) = if z_pass { (in_front(up), in_front(down)) } else { (behind(down), behind(up)) };
         [false, true].map(|batched| {
             [FrontFace::Ccw, FrontFace::Cw].map(|front_face| {
-                let stencil = StencilState {
-                    front: count(StencilOperation::DecrementWrap),
-                    back: count(StencilOperation::IncrementWrap),
-                    read_mask: 0,
-                    write_mask: if batched { BATCH_MASK } else { 0xff },
-                };
+                let stencil =
+                    StencilState { front, back, read_mask: 0, write_mask: if batched { BATCH_MASK } else { 0xff } };
                 let primitive = PrimitiveState { front_face, unclipped_depth, ..PrimitiveState::default() };
                 self.pipeline(vertex, fragment, primitive, CompareFunction::Greater, stencil)
             })
         })
+    }
+
+    fn start(&self) -> RenderPipeline {
+        let face = StencilFaceState { pass_op: StencilOperation::Replace, ..KEEP };
+        let stencil = StencilState { front: face, back: face, read_mask: 0, write_mask: 0xff };
+        self.pipeline("image", None, PrimitiveState::default(), CompareFunction::Always, stencil)
     }
 
     /// Where a batch left a count, sets the sticky bit and clears the count.
@@ -176,11 +195,18 @@ impl Maker<'_> {
 }
 
 /// Counts fragments that fail the depth test: those at or behind the visible surface, for the test is strict.
-const fn count(operation: StencilOperation) -> StencilFaceState {
-    StencilFaceState {
-        compare: CompareFunction::Always,
-        fail_op: StencilOperation::Keep,
-        depth_fail_op: operation,
-        pass_op: StencilOperation::Keep,
-    }
+const fn behind(operation: StencilOperation) -> StencilFaceState {
+    StencilFaceState { depth_fail_op: operation, ..KEEP }
 }
+
+/// Counts fragments that pass the depth test: those in front of the visible surface.
+const fn in_front(operation: StencilOperation) -> StencilFaceState {
+    StencilFaceState { pass_op: operation, ..KEEP }
+}
+
+const KEEP: StencilFaceState = StencilFaceState {
+    compare: CompareFunction::Always,
+    fail_op: StencilOperation::Keep,
+    depth_fail_op: StencilOperation::Keep,
+    pass_op: StencilOperation::Keep,
+};

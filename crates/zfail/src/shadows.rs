@@ -5,13 +5,15 @@ use crate::error::Error;
 use crate::frame_buffers::FrameBuffers;
 use crate::pipelines::{Pipelines, STICKY, Target, Variant};
 use glam::DAffine3;
+use std::ops::Range;
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry,
-    BindingType, BufferBindingType, Device, IndexFormat, Queue, RenderPass, ShaderModule, ShaderStages,
+    BindingType, BufferBindingType, Device, IndexFormat, Queue, RenderPass, RenderPipeline, ShaderModule, ShaderStages,
 };
-use zfail_plan::plan::{self, Counting, Draw, LightStats, Planner, ShadowLight, Technique};
+use zfail_plan::plan::{self, Counting, Draw, FramePlan, LightStats, Measures, Planner, ShadowLight};
+use zfail_plan::scene::Bounds;
 use zfail_plan::scissor::Rectangle;
-use zfail_plan::topology::Topology;
+use zfail_plan::topology::{Surface, Topology};
 use zfail_plan::view::View;
 
 /// A mesh registered with one [`Shadows`].
@@ -39,8 +41,11 @@ pub struct Frame<'a> {
     pub casters: &'a [Caster],
     /// What shines, in the order in which [`Shadows::draw`] counts.
     pub lights: &'a [ShadowLight<'a>],
-    /// Which algorithm; [`Technique::Auto`] unless you compare.
-    pub technique: Technique,
+    /// Boxes in world space that together hold every surface in the depth buffer; empty if you do not know. They
+    /// save drawing volumes where there is nothing to shadow.
+    pub receivers: &'a [Bounds],
+    /// Which steps to take; those of [`Technique::Auto`](plan::Technique::Auto) unless you compare.
+    pub measures: Measures,
     /// What the stencil is to hold; [`Counting::Verdict`] unless you look at counts.
     pub counting: Counting,
 }
@@ -97,19 +102,20 @@ impl Shadows {
 
     /// Registers a mesh: the very triangles that the depth pass draws, with their vertices in the same order.
     /// `positions` are in object space, best kept near its origin; they may repeat (the mesh is welded by exact
-    /// position). Triangles for which `casts` is false block no light.
+    /// position). `surface` tells of each triangle whether it blocks light (a `bool`), or also whether the depth pass draws
+    /// it from both sides or not everywhere (a [`Surface`]).
     ///
     /// # Errors
     /// Indices out of range, coordinates that are not finite, or more vertices than the device's buffers hold.
-    pub fn add_mesh(
+    pub fn add_mesh<S: Into<Surface>>(
         &mut self,
         device: &Device,
         queue: &Queue,
         positions: &[[f32; 3]],
         triangles: &[[u32; 3]],
-        casts: impl Fn(usize) -> bool,
+        surface: impl Fn(usize) -> S,
     ) -> Result<MeshId, Error> {
-        let topology = Topology::new(positions, triangles, casts)?;
+        let topology = Topology::new(positions, triangles, surface)?;
         let (slot, serial, moved) = self.arena.add(device, queue, topology)?;
         if moved {
             self.bindings = bind(device, &self.layout, &self.arena, &self.buffers);
@@ -135,43 +141,67 @@ impl Shadows {
     }
 
     /// Plans every light of a frame and uploads its volumes. Call it before encoding the frame's passes, and submit
-    /// those before preparing the next frame. Returns one entry of figures per light.
+    /// those before preparing the next frame. [`Self::plan`] then tells what will be drawn.
     ///
     /// # Errors
     /// A caster without a registered mesh or with a singular transform, or volumes too large for the device's buffers.
-    pub fn prepare(&mut self, device: &Device, queue: &Queue, frame: &Frame<'_>) -> Result<Vec<LightStats>, Error> {
-        let meshes = frame
-            .casters
-            .iter()
-            .enumerate()
-            .map(|(caster, c)| self.arena.get(c.mesh.slot, c.mesh.serial).ok_or(Error::UnknownMesh { caster }));
-        let meshes = meshes.collect::<Result<Vec<_>, _>>()?;
-        let casters: Vec<plan::Caster<'_>> = frame
-            .casters
-            .iter()
-            .zip(&meshes)
-            .map(|(c, m)| plan::Caster {
-                topology: &m.topology,
-                mesh: m.serial,
-                world_from_object: c.world_from_object,
-            })
-            .collect();
+    /// Nothing is drawn then.
+    pub fn prepare(&mut self, device: &Device, queue: &Queue, frame: &Frame<'_>) -> Result<(), Error> {
+        let outcome = self.plan_and_upload(device, queue, frame);
+        if outcome.is_err() {
+            self.planner = Planner::new();
+        }
+        outcome
+    }
+
+    fn plan_and_upload(&mut self, device: &Device, queue: &Queue, frame: &Frame<'_>) -> Result<(), Error> {
+        let mut casters = Vec::with_capacity(frame.casters.len());
+        for (c, caster) in frame.casters.iter().enumerate() {
+            let mesh = self.arena.get(caster.mesh.slot, caster.mesh.serial).ok_or(Error::UnknownMesh { caster: c })?;
+            let world_from_object = caster.world_from_object;
+            casters.push(plan::Caster { topology: &mesh.topology, mesh: mesh.serial, world_from_object });
+        }
         let plan = self.planner.plan(&plan::Frame {
             view: frame.view,
             casters: &casters,
             lights: frame.lights,
-            technique: frame.technique,
+            receivers: frame.receivers,
+            measures: frame.measures,
             counting: frame.counting,
         })?;
         self.first_positions.clear();
-        self.first_positions.extend(plan.draws.iter().map(|d| meshes[d.caster as usize].first));
+        let first = |d: &Draw| {
+            let mesh = frame.casters[d.caster as usize].mesh;
+            self.arena.get(mesh.slot, mesh.serial).map_or(0, |mesh| mesh.first)
+        };
+        self.first_positions.extend(plan.draws.iter().map(first));
         let place = |caster: u32| frame.casters[caster as usize].world_from_object;
-        if self.buffers.upload(device, queue, plan, frame.view, place)? {
+        let moved = self.buffers.upload(device, queue, plan, frame.view, place)?;
+        if moved {
             self.bindings = bind(device, &self.layout, &self.arena, &self.buffers);
         }
         self.finite = frame.view.is_finite();
         self.image = zfail_plan::scissor::full(frame.view);
-        Ok(plan.lights.iter().map(|light| light.stats.clone()).collect())
+        Ok(())
+    }
+
+    /// What the prepared frame draws.
+    #[must_use]
+    pub fn plan(&self) -> &FramePlan {
+        self.planner.last()
+    }
+
+    /// Changes what the prepared frame draws: for figures of what goes wrong without a step, and for tests that see
+    /// whether anyone would notice. Ranges of indices, scissors, z-pass and clear values may be changed, and draws
+    /// emptied; indices, lights and transforms are on the device already.
+    pub fn edit_plan(&mut self, edit: impl FnOnce(&mut FramePlan)) {
+        edit(self.planner.last_mut());
+    }
+
+    /// Figures of one light of the prepared frame.
+    #[must_use]
+    pub fn stats(&self, light: usize) -> LightStats {
+        self.plan().lights.get(light).map(|light| light.stats).unwrap_or_default()
     }
 
     /// Encodes the volumes of one light of the prepared frame. The pass holds the finished depth of the view and a
@@ -181,46 +211,99 @@ impl Shadows {
     ///
     /// Does nothing if the prepared frame has no such light, or the last [`Self::prepare`] failed.
     pub fn draw(&self, pass: &mut RenderPass<'_>, pipelines: &Pipelines, light: usize) {
-        let plan = self.planner.last();
+        let plan = self.plan();
         let Some(light) = plan.lights.get(light) else { return };
-        let Some([x, y, width, height]) = light.scissor else { return };
-        if light.batches.is_empty() {
-            return;
-        }
-        pass.set_scissor_rect(x, y, width, height);
+        let Some(scissor) = light.scissor.filter(|_| light.stats.has_shadow()) else { return };
         pass.set_bind_group(0, &self.bindings, &[]);
         pass.set_index_buffer(self.buffers.indices.slice(..), IndexFormat::Uint32);
-        let last = light.batches.len() - 1;
+        let last = light.batches.len().saturating_sub(1);
+        let mut state = PassState { scissor: None, pipeline: None };
+        // Modulo 256, as all counting is.
+        let near_count = light.stats.near_count % 256;
+        if near_count > 0 {
+            state.set_scissor(pass, scissor);
+            state.set_pipeline(pass, &pipelines.start);
+            pass.set_stencil_reference(near_count);
+            pass.draw(0..3, 0..1);
+        }
         for (i, batch) in light.batches.iter().enumerate() {
             for d in batch.clone() {
-                self.draw_volume(pass, pipelines, d, &plan.draws[d as usize], last > 0);
+                self.draw_volume(pass, &mut state, pipelines, d, &plan.draws[d as usize], last > 0);
             }
             if i < last {
-                pass.set_pipeline(&pipelines.fold);
+                state.set_scissor(pass, scissor);
+                state.set_pipeline(pass, &pipelines.fold);
                 pass.set_stencil_reference(STICKY);
                 pass.draw(0..3, 0..1);
             }
         }
-        let [x, y, width, height] = self.image;
-        pass.set_scissor_rect(x, y, width, height);
+        state.set_scissor(pass, self.image);
     }
 
-    fn draw_volume(&self, pass: &mut RenderPass<'_>, pipelines: &Pipelines, d: u32, draw: &Draw, batched: bool) {
+    fn draw_volume<'p>(
+        &self,
+        pass: &mut RenderPass<'_>,
+        state: &mut PassState<'p>,
+        pipelines: &'p Pipelines,
+        d: u32,
+        draw: &Draw,
+        batched: bool,
+    ) {
         // Indices are doubled to make room for the extruded bit, and so is the base.
         let base = (self.first_positions[d as usize] * 2).cast_signed();
         let volume = &draw.volume;
-        let variant = Variant { finite: self.finite, batched, clockwise: draw.mirrored };
-        pass.set_pipeline(pipelines.extruded(variant));
-        if self.finite {
-            pass.draw_indexed(volume.sides.start..volume.dark_cap.end, base, d..d + 1);
-            pass.set_pipeline(pipelines.light_cap(variant));
-            pass.draw_indexed(volume.light_cap.clone(), base, d..d + 1);
-        } else {
-            pass.draw_indexed(volume.outward(), base, d..d + 1);
+        let variant = Variant { z_pass: draw.z_pass, finite: self.finite, batched, clockwise: draw.mirrored };
+        let reversed = Variant { clockwise: !variant.clockwise, ..variant };
+        state.set_scissor(pass, draw.scissor);
+        // Neighbouring ranges under one pipeline are one draw.
+        let mut pending: Option<(&RenderPipeline, Range<u32>)> = None;
+        for (pipeline, range) in [
+            (pipelines.extruded(variant), &volume.sides),
+            (pipelines.extruded(variant), &volume.dark_cap),
+            (pipelines.light_cap(variant), &volume.light_cap),
+            (pipelines.light_cap(reversed), &volume.light_cap_reversed),
+        ] {
+            if range.is_empty() {
+                continue;
+            }
+            pending = Some(match pending {
+                Some((same, before)) if same == pipeline && before.end == range.start => {
+                    (same, before.start..range.end)
+                }
+                Some((other, before)) => {
+                    state.set_pipeline(pass, other);
+                    pass.draw_indexed(before, base, d..d + 1);
+                    (pipeline, range.clone())
+                }
+                None => (pipeline, range.clone()),
+            });
         }
-        if !volume.light_cap_reversed.is_empty() {
-            pass.set_pipeline(pipelines.light_cap(Variant { clockwise: !variant.clockwise, ..variant }));
-            pass.draw_indexed(volume.light_cap_reversed.clone(), base, d..d + 1);
+        if let Some((pipeline, range)) = pending {
+            state.set_pipeline(pass, pipeline);
+            pass.draw_indexed(range, base, d..d + 1);
+        }
+    }
+}
+
+/// What a pass has been told, so that it is told only once.
+struct PassState<'p> {
+    scissor: Option<Rectangle>,
+    pipeline: Option<&'p RenderPipeline>,
+}
+
+impl<'p> PassState<'p> {
+    fn set_scissor(&mut self, pass: &mut RenderPass<'_>, scissor: Rectangle) {
+        if self.scissor != Some(scissor) {
+            self.scissor = Some(scissor);
+            let [x, y, width, height] = scissor;
+            pass.set_scissor_rect(x, y, width, height);
+        }
+    }
+
+    fn set_pipeline(&mut self, pass: &mut RenderPass<'_>, pipeline: &'p RenderPipeline) {
+        if self.pipeline != Some(pipeline) {
+            self.pipeline = Some(pipeline);
+            pass.set_pipeline(pipeline);
         }
     }
 }

@@ -4,7 +4,7 @@ mod stage;
 
 use stage::{Setup, Soup, stencil};
 use zfail::glam::{DAffine3, DMat3, DQuat, DVec3};
-use zfail::{Counting, LightKind, Projection, Technique, View};
+use zfail::{Counting, LightKind, Projection, View};
 
 /// Small deterministic random numbers (splitmix64).
 struct Random(u64);
@@ -255,7 +255,7 @@ fn any_number_of_layers_is_shadow() {
         LightKind::Directional { direction: DVec3::NEG_Y },
     ];
     for light in lamps {
-        let setup = |counting| Setup { counting, technique: Technique::EverittKilgard, ..Setup::default() };
+        let setup = |counting| Setup { counting, ..Setup::default() };
         let Some(one) = stencil(&setup(Counting::Verdict), &beside_the_stack(), &stack(1, true), light) else { return };
         assert!(one.iter().filter(|&&s| s > 0).count() > 500, "the shadow of one layer is in view");
         for (layers, one_mesh) in [(256, true), (256, false), (1000, true), (1000, false)] {

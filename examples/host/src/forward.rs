@@ -96,7 +96,8 @@ impl Host {
                 view,
                 casters: &casters,
                 lights: &lights,
-                technique: Technique::Auto,
+                receivers: &[],
+                measures: Technique::Auto.into(),
                 counting: Counting::Verdict,
             },
         )?;

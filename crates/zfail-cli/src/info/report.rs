@@ -8,7 +8,7 @@ use serde::Serialize;
 use zfail_plan::scene::{AlphaMode, Bounds, Camera, Instance, Light, LightKind, Material, Mesh, Scene};
 use zfail_plan::topology::{NONE, Part, Shape, Topology};
 use zfail_plan::view::Projection;
-use zfail_scene::FileInfo;
+use zfail_scene::{Animated, Animation, FileInfo};
 
 /// A scene.
 #[derive(Serialize)]
@@ -22,6 +22,7 @@ pub struct Report {
     pub instances: Vec<InstanceReport>,
     pub lights: Vec<LightReport>,
     pub cameras: Vec<CameraReport>,
+    pub animations: Vec<AnimationReport>,
     pub materials: Vec<MaterialReport>,
     pub textures: usize,
     pub images: usize,
@@ -35,7 +36,6 @@ pub struct FileReport {
     pub generator: Option<String>,
     pub extensions_used: Vec<String>,
     pub extensions_required: Vec<String>,
-    pub animations: Vec<String>,
     pub skins: usize,
     pub morphed_meshes: usize,
 }
@@ -110,6 +110,16 @@ pub struct CameraReport {
     pub near: f64,
 }
 
+/// An animation.
+#[derive(Serialize)]
+pub struct AnimationReport {
+    pub name: String,
+    /// Seconds.
+    pub duration: f64,
+    /// Whether it moves instances, lights or cameras; one of skins or morph targets alone does not.
+    pub moves: bool,
+}
+
 /// A material.
 #[derive(Serialize)]
 pub struct MaterialReport {
@@ -125,7 +135,7 @@ impl Report {
     ///
     /// # Errors
     /// If a mesh is beyond what topology supports.
-    pub fn new(scene: &Scene, file: Option<FileInfo>) -> Result<Self, Error> {
+    pub fn new(Animated { scene, animations, .. }: &Animated, file: Option<FileInfo>) -> Result<Self, Error> {
         let meshes = scene.meshes.par_iter().enumerate().map(|(m, mesh)| MeshReport::new(scene, m, mesh));
         Ok(Self {
             scene: scene.name.clone(),
@@ -136,6 +146,7 @@ impl Report {
             instances: scene.instances.iter().map(InstanceReport::new).collect(),
             lights: scene.lights.iter().map(LightReport::new).collect(),
             cameras: scene.cameras.iter().map(CameraReport::new).collect(),
+            animations: animations.iter().map(AnimationReport::new).collect(),
             materials: scene.materials.iter().map(MaterialReport::new).collect(),
             textures: scene.textures.len(),
             images: scene.images.len(),
@@ -151,7 +162,6 @@ impl FileReport {
             generator: info.generator,
             extensions_used: info.extensions_used,
             extensions_required: info.extensions_required,
-            animations: info.animations,
             skins: info.skins,
             morphed_meshes: info.morphed_meshes,
         }
@@ -251,6 +261,12 @@ impl CameraReport {
             ymag,
             near,
         }
+    }
+}
+
+impl AnimationReport {
+    fn new(animation: &Animation) -> Self {
+        Self { name: animation.name.clone(), duration: animation.duration, moves: animation.moves_anything() }
     }
 }
 

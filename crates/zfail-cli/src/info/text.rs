@@ -1,6 +1,6 @@
 //! The report as a person reads it.
 
-use super::report::{CameraReport, FileReport, LightReport, MeshReport, Report};
+use super::report::{AnimationReport, CameraReport, FileReport, LightReport, MeshReport, Report};
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
 
@@ -17,6 +17,7 @@ impl Display for Report {
         list(f, "meshes", &self.meshes, "")?;
         list(f, "lights", &self.lights, " (rendering adds a directional one)")?;
         list(f, "cameras", &self.cameras, " (rendering adds one that frames the scene)")?;
+        list(f, "animations", &self.animations, "")?;
 
         let with = |alpha: &str| self.materials.iter().filter(|m| m.alpha == alpha).count();
         writeln!(
@@ -44,8 +45,8 @@ impl Display for FileReport {
         if let Some(generator) = &self.generator {
             write!(f, ", generator '{generator}'")?;
         }
-        let (animations, skins) = (count(self.animations.len(), "animation"), count(self.skins, "skin"));
-        writeln!(f, "; {animations}, {skins}, {} with morph targets", count(self.morphed_meshes, "mesh"))?;
+        let morphed = count(self.morphed_meshes, "mesh");
+        writeln!(f, "; {}, {morphed} with morph targets", count(self.skins, "skin"))?;
         if self.extensions_used.is_empty() {
             return Ok(());
         }
@@ -121,6 +122,13 @@ impl Display for CameraReport {
             (None, Some(ymag)) => write!(f, ", {:.3} m high", 2.0 * ymag),
             (None, None) => Ok(()),
         }
+    }
+}
+
+impl Display for AnimationReport {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "'{}': {:.3} s", self.name, self.duration)?;
+        if self.moves { Ok(()) } else { write!(f, ", moves no node of the scene") }
     }
 }
 

@@ -85,7 +85,8 @@ pub fn files(folder: &Path) -> Vec<String> {
 }
 
 /// Writes `small.gltf`: a floor of 8 m, a square of 1 m that hovers 1 m above it, the cameras 'above' and 'aside',
-/// and the lights 'sun' (directional), 'lamp' (point) and 'torch' (spot).
+/// the lights 'sun' (directional), 'lamp' (point) and 'torch' (spot), and the animations 'glide' (of 'above') and
+/// 'sunset' (of the sun), both of 2 s.
 pub fn small_scene(folder: &Path) -> PathBuf {
     let square = |half: f32, y: f32| [[-half, y, half], [half, y, half], [half, y, -half], [-half, y, -half]];
     let positions: Vec<[f32; 3]> = [square(4.0, 0.0), square(0.5, 1.0)].concat();
@@ -93,6 +94,9 @@ pub fn small_scene(folder: &Path) -> PathBuf {
     let normals = [[0.0, 1.0, 0.0]; 8];
     let mut bytes: Vec<u8> = positions.iter().chain(&normals).flatten().flat_map(|x| x.to_le_bytes()).collect();
     bytes.extend(indices.iter().flat_map(|i| i.to_le_bytes()));
+    // Key times, camera 'above' to x = 0.5, the sun to the horizon.
+    let keys: [f32; 16] = [0.0, 2.0, 0.0, 6.0, 0.0, 0.5, 6.0, 0.0, -0.8944272, 0.0, 0.0, 0.4472136, 0.0, 0.0, 0.0, 1.0];
+    bytes.extend(keys.iter().flat_map(|x| x.to_le_bytes()));
     fs::write(folder.join("small.bin"), &bytes).expect("the buffer is written");
     // A quarter turn about the x axis.
     let down = [-FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2];
@@ -109,12 +113,22 @@ pub fn small_scene(folder: &Path) -> PathBuf {
             { "buffer": 0, "byteOffset": 0, "byteLength": 96 },
             { "buffer": 0, "byteOffset": 96, "byteLength": 96 },
             { "buffer": 0, "byteOffset": 192, "byteLength": 24 },
+            { "buffer": 0, "byteOffset": 216, "byteLength": 64 },
         ],
         "accessors": [
             { "bufferView": 0, "componentType": 5126, "count": 8, "type": "VEC3",
               "min": [-4.0, 0.0, -4.0], "max": [4.0, 1.0, 4.0] },
             { "bufferView": 1, "componentType": 5126, "count": 8, "type": "VEC3" },
             { "bufferView": 2, "componentType": 5123, "count": 12, "type": "SCALAR" },
+            { "bufferView": 3, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0.0], "max": [2.0] },
+            { "bufferView": 3, "byteOffset": 8, "componentType": 5126, "count": 2, "type": "VEC3" },
+            { "bufferView": 3, "byteOffset": 32, "componentType": 5126, "count": 2, "type": "VEC4" },
+        ],
+        "animations": [
+            { "name": "glide", "samplers": [{ "input": 3, "output": 4 }],
+              "channels": [{ "sampler": 0, "target": { "node": 1, "path": "translation" } }] },
+            { "name": "sunset", "samplers": [{ "input": 3, "output": 5, "interpolation": "STEP" }],
+              "channels": [{ "sampler": 0, "target": { "node": 3, "path": "rotation" } }] },
         ],
         "materials": [{ "name": "paper", "doubleSided": true, "pbrMetallicRoughness": { "metallicFactor": 0.0 } }],
         "meshes": [{ "name": "squares", "primitives": [

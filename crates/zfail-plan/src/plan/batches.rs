@@ -2,7 +2,9 @@
 //!
 //! In: weights of every pair of one light. Out: a batch number per triangle, or none where one batch will do.
 
-use super::pair::Pair;
+use super::meridians::{Crossings, Lines};
+use super::pair::{Pair, Role};
+use super::placed::Placed;
 use super::{Counting, Frame};
 use crate::scene::{Bounds, LightKind};
 use crate::stack::{self, Cone};
@@ -18,7 +20,7 @@ const FOLDED: usize = 120;
 #[derive(Debug, Default)]
 pub(super) struct Batching {
     /// What the division was made for.
-    key: Vec<(u64, DAffine3)>,
+    key: Vec<(u32, u64, DAffine3)>,
     light: Option<LightKind>,
     /// Orthographic views change weights, and with them the pairs' batches.
     orthographic: bool,
@@ -33,75 +35,105 @@ struct Item {
 }
 
 impl Batching {
-    /// Sets the batches of `pairs`, all of light `l`.
-    pub fn divide(&mut self, frame: &Frame<'_>, l: usize, pairs: &mut [Pair]) {
-        let casting = |pair: &Pair| pair.weights.iter().filter(|&&c| c != 0).count();
-        if frame.counting == Counting::Raw || pairs.iter().map(casting).sum::<usize>() <= SINGLE {
+    /// Sets the batches of `pairs`, all of light `l`, one per caster. Builds their sides.
+    pub fn divide(&mut self, frame: &Frame<'_>, l: usize, pairs: &mut [Pair], placed: &[Placed]) {
+        let active = |pair: &Pair| pair.role != Role::Idle;
+        let casting: usize = pairs.iter().filter(|p| active(p)).map(|p| p.casting).sum();
+        if frame.counting == Counting::Raw || casting <= SINGLE {
             pairs.iter_mut().for_each(Pair::unite);
             self.light = None;
             return;
         }
         let kind = frame.lights[l].kind;
         let orthographic = matches!(frame.view.projection, Projection::Orthographic { .. });
-        let placed = |pair: &Pair| {
-            let caster = &frame.casters[pair.caster];
-            (caster.mesh, caster.world_from_object)
+        let key = || {
+            let active = pairs.iter().zip(placed).enumerate().filter(|(_, (pair, _))| active(pair));
+            active.map(|(c, (_, placed))| (c as u32, placed.mesh, placed.world_from_object))
         };
-        let same_view = self.orthographic == orthographic;
-        if same_view && self.light == Some(kind) && self.key.iter().copied().eq(pairs.iter().map(placed)) {
+        if self.orthographic == orthographic && self.light == Some(kind) && self.key.iter().copied().eq(key()) {
             if !self.divided {
                 pairs.iter_mut().for_each(Pair::unite);
             }
             return;
         }
         self.key.clear();
-        self.key.extend(pairs.iter().map(placed));
+        self.key.extend(key());
         self.light = Some(kind);
         self.orthographic = orthographic;
 
-        let (items, cones, shape) = cones(frame, &kind, pairs);
-        self.divided = !stack::is_within(&cones, &shape, SINGLE);
+        self.divided = !quickly_within(frame, &kind, pairs, placed) && {
+            let (items, cones, shape) = cones(frame, &kind, pairs, placed);
+            let within = stack::is_within(&cones, &shape, SINGLE);
+            if !within {
+                spread(pairs, &items, &cones, &shape);
+            }
+            !within
+        };
         if !self.divided {
             pairs.iter_mut().for_each(Pair::unite);
-            return;
         }
-        let mut batches = Vec::new();
-        halve(&items, &cones, &shape, &mut batches);
-        for pair in &mut *pairs {
-            let triangles = pair.weights.len();
-            pair.divide(|batch_of| {
-                batch_of.clear();
-                batch_of.resize(triangles, 0);
-            });
-        }
-        for (batch, range) in batches.into_iter().enumerate() {
-            for item in &items[range] {
-                // More batches than 16 bits would need 8 million stacked layers; the last one takes the rest.
-                pairs[item.pair].batch_of[item.triangle] = batch.min(usize::from(u16::MAX)) as u16;
-            }
+    }
+}
+
+/// Whether silhouettes alone prove that no ray crosses more layers than a stencil can count.
+fn quickly_within(frame: &Frame<'_>, kind: &LightKind, pairs: &mut [Pair], placed: &[Placed]) -> bool {
+    let mut bounds = Bounds::EMPTY;
+    for caster in placed.iter().filter(|p| !p.world.is_empty()) {
+        bounds.add(caster.world.min);
+        bounds.add(caster.world.max);
+    }
+    let lines = Lines::new(kind.homogeneous(), &bounds);
+    let mut all = Crossings::NONE;
+    let active = |(_, (pair, _)): &(usize, (&mut Pair, &Placed))| pair.role != Role::Idle;
+    for (c, (pair, caster)) in pairs.iter_mut().zip(placed).enumerate().filter(active) {
+        let topology = frame.casters[c].topology;
+        // Batches would put sides between triangles that have none.
+        pair.unite();
+        pair.build_sides(topology);
+        all.merge(pair.crossings(topology, &caster.world_from_object, lines));
+    }
+    all.bound() <= SINGLE
+}
+
+/// Distributes casting triangles over batches.
+fn spread(pairs: &mut [Pair], items: &[Item], cones: &[Cone], shape: &stack::Frame) {
+    let mut batches = Vec::new();
+    halve(items, cones, shape, &mut batches);
+    for pair in pairs.iter_mut().filter(|pair| pair.role != Role::Idle) {
+        let triangles = pair.weights.len();
+        pair.divide(|batch_of| {
+            batch_of.clear();
+            batch_of.resize(triangles, 0);
+        });
+    }
+    for (batch, range) in batches.into_iter().enumerate() {
+        for item in &items[range] {
+            // More batches than 16 bits would need 8 million stacked layers; the last one takes the rest.
+            pairs[item.pair].batch_of[item.triangle] = batch.min(usize::from(u16::MAX)) as u16;
         }
     }
 }
 
 /// All casting triangles of one light as cones, nearest caster first, nearest triangle first.
-fn cones(frame: &Frame<'_>, kind: &LightKind, pairs: &[Pair]) -> (Vec<Item>, Vec<Cone>, stack::Frame) {
+fn cones(
+    frame: &Frame<'_>,
+    kind: &LightKind,
+    pairs: &[Pair],
+    placed: &[Placed],
+) -> (Vec<Item>, Vec<Cone>, stack::Frame) {
     let light = kind.homogeneous();
+    let active = || pairs.iter().zip(placed).enumerate().filter(|(_, (pair, _))| pair.role != Role::Idle);
     let mut bounds = Bounds::EMPTY;
-    for pair in pairs {
-        let caster = &frame.casters[pair.caster];
-        let object = caster.topology.bounds();
-        if !object.is_empty() {
-            let world = object.transformed(&caster.world_from_object);
-            bounds.add(world.min);
-            bounds.add(world.max);
-        }
+    for (_, (_, caster)) in active().filter(|(_, (_, caster))| !caster.bounds.is_empty()) {
+        let world = caster.bounds.transformed(&caster.world_from_object);
+        bounds.add(world.min);
+        bounds.add(world.max);
     }
     let shape = stack::Frame::new(light, &bounds);
     let mut items = Vec::new();
-    for (p, pair) in pairs.iter().enumerate() {
-        let caster = &frame.casters[pair.caster];
+    for (p, (pair, caster)) in active() {
         for triangle in (0..pair.weights.len()).filter(|&t| pair.weights[t] != 0) {
-            let corners = caster.topology.corners(triangle);
+            let corners = frame.casters[p].topology.corners(triangle);
             let center = caster.world_from_object.transform_point3((corners[0] + corners[1] + corners[2]) / 3.0);
             let distance =
                 if light.w == 0.0 { -light.truncate().dot(center) } else { light.truncate().distance(center) };
@@ -119,9 +151,9 @@ fn cones(frame: &Frame<'_>, kind: &LightKind, pairs: &[Pair]) -> (Vec<Item>, Vec
     let cones = items
         .iter()
         .map(|item| {
-            let caster = &frame.casters[pairs[item.pair].caster];
-            let corners = caster.topology.corners(item.triangle);
-            stack::cone(corners.map(|p| caster.world_from_object.transform_point3(p)), light, &shape)
+            let corners = frame.casters[item.pair].topology.corners(item.triangle);
+            let place = placed[item.pair].world_from_object;
+            stack::cone(corners.map(|p| place.transform_point3(p)), light, &shape)
         })
         .collect();
     (items, cones, shape)

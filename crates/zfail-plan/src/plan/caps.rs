@@ -8,12 +8,11 @@
 //!
 //! In: the weights of one pair. Out: a cluster per casting triangle with the normal of its plane, and the planes.
 
-use super::Caster;
 use crate::casting::ObjectLight;
 use crate::scene::Bounds;
 use crate::topology::Topology;
 use crate::view::{Projection, View};
-use glam::{DVec3, Vec4};
+use glam::{DAffine3, DVec3, Vec4};
 
 /// Least cosine between a plane's normal and the directions to its cluster.
 const SPREAD: f64 = 0.05;
@@ -97,9 +96,8 @@ fn compass() -> Vec<DVec3> {
 }
 
 /// The plane with normal `u` beyond everything in view, object space.
-pub(super) fn plane(u: DVec3, light: ObjectLight, view: &View, caster: &Caster<'_>) -> Vec4 {
+pub(super) fn plane(u: DVec3, light: ObjectLight, view: &View, object_from_relative: &DAffine3) -> Vec4 {
     let Projection::Orthographic { ymag, near, far } = view.projection else { return Vec4::ZERO };
-    let object_from_world = caster.world_from_object.inverse();
     let xmag = ymag * view.aspect();
     let mut corners = Bounds::EMPTY;
     // A point light itself has to lie before its plane.
@@ -107,8 +105,8 @@ pub(super) fn plane(u: DVec3, light: ObjectLight, view: &View, caster: &Caster<'
     for x in [-xmag, xmag] {
         for y in [-ymag, ymag] {
             for z in [-near, -far] {
-                let corner = view.world_from_view.transform_point3(DVec3::new(x, y, z));
-                let corner = object_from_world.transform_point3(corner);
+                let corner = view.world_from_view.matrix3 * DVec3::new(x, y, z);
+                let corner = object_from_relative.transform_point3(corner);
                 corners.add(corner);
                 reach = reach.max(u.dot(corner));
             }

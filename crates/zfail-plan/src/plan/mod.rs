@@ -1,28 +1,41 @@
 //! What each light draws this frame.
 //!
-//! In: the view, placed topologies, lights, technique. Out: one index list for the frame and, per light, batches of
-//! draws into it, the scissor rectangle and figures. Scratch memory is kept between frames, and a caster whose light
-//! did not move in its object space keeps its silhouette.
+//! In: the view, placed topologies, lights, and the steps to take. Out: index lists and, per light, batches of draws
+//! into them, the scissor rectangle and figures. Nothing that stays as it was is computed again: a caster whose light did
+//! not move in its object space keeps its silhouette, its caps and their place in the index array.
+//!
+//! One light's casters pass these stages, which are McGuire et al. 2003, section 7, and more: [`reach`](self) of the
+//! light, parts off screen, receivers, occluders, facing, batches, z-pass or z-fail, caps.
 
 mod batches;
 mod caps;
-mod cull;
+mod meridians;
+mod near_count;
+mod occluders;
+mod off_screen;
 mod pair;
+mod placed;
+mod pyramid;
+mod reach;
+mod receivers;
+mod stages;
+mod stats;
+mod store;
 mod technique;
 
-pub use technique::{Counting, Technique, UnknownTechnique};
+pub use stats::{Culled, LightStats, Triangles};
+pub use technique::{Counting, Measures, Technique, UnknownTechnique, ZPass};
 
 use crate::casting::ObjectLight;
-use crate::scene::LightKind;
+use crate::scene::{Bounds, LightKind};
 use crate::scissor::Rectangle;
 use crate::topology::Topology;
 use crate::view::View;
 use crate::volume::Volume;
 use glam::{DAffine3, Vec4};
-use pair::Pair;
-use rayon::prelude::*;
-use std::collections::BTreeMap;
 use std::ops::Range;
+
+pub use stages::Planner;
 
 /// A mesh placed in the world that blocks light.
 #[derive(Clone, Copy, Debug)]
@@ -53,8 +66,10 @@ pub struct Frame<'a> {
     pub casters: &'a [Caster<'a>],
     /// What shines.
     pub lights: &'a [ShadowLight<'a>],
-    /// Which algorithm.
-    pub technique: Technique,
+    /// Boxes in world space that together hold every surface in the depth buffer; empty where that is not known.
+    pub receivers: &'a [Bounds],
+    /// Which steps to take; [`Technique`]s are made of them.
+    pub measures: Measures,
     /// What the stencil is to hold afterwards.
     pub counting: Counting,
 }
@@ -82,6 +97,10 @@ pub struct Draw {
     pub light: ObjectLight,
     /// Plane of the dark cap in object space, `dot(xyz, p) = w`; zero where the cap lies at infinity.
     pub cap: Vec4,
+    /// Whether fragments count that pass the depth test instead of those that fail it.
+    pub z_pass: bool,
+    /// Pixels in which the volume is to be drawn.
+    pub scissor: Rectangle,
     /// Ranges into [`FramePlan::indices`].
     pub volume: Volume,
     /// Whether the caster's transform mirrors, so that outside is clockwise.
@@ -100,167 +119,15 @@ pub struct LightPlan {
     pub stats: LightStats,
 }
 
-/// Figures of one light's plan.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct LightStats {
-    /// Casters considered.
-    pub casters: u32,
-    /// Casters left out, by reason.
-    pub culled: BTreeMap<&'static str, u32>,
-    /// Casters drawn in case 1 (z-pass), 2 (z-fail without light cap) and 3 (z-fail) of McGuire et al., section 7.
-    pub cases: [u32; 3],
-    /// Triangles submitted.
-    pub triangles: Triangles,
-    /// Vertex indices submitted.
-    pub vertices: u32,
-    /// Pixels the light may reach: x, y, width, height; all zero where it reaches none.
-    pub scissor: Rectangle,
-}
-
-/// Triangles of shadow volumes by part.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Triangles {
-    /// Extruded silhouette edges.
-    pub sides: u32,
-    /// Casting triangles at infinity.
-    pub dark_cap: u32,
-    /// Casting triangles in place.
-    pub light_cap: u32,
-}
-
 /// All lights of one frame.
 #[derive(Clone, Debug, Default)]
 pub struct FramePlan {
-    /// Vertex indices as [`crate::volume`] defines them.
+    /// Vertex indices as [`crate::volume`] defines them, in no particular order, with gaps.
     pub indices: Vec<u32>,
     /// Volumes, grouped by light and batch.
     pub draws: Vec<Draw>,
     /// One entry per light of the frame.
     pub lights: Vec<LightPlan>,
-}
-
-/// Plans frame after frame, keeping memory and what has not changed.
-#[derive(Debug, Default)]
-pub struct Planner {
-    pairs: Vec<Pair>,
-    batching: Vec<batches::Batching>,
-    plan: FramePlan,
-}
-
-impl Planner {
-    /// A planner without any memory of frames.
-    #[must_use]
-    pub fn new() -> Self {
-        Self::default()
-    }
-
-    /// The last frame planned.
-    #[must_use]
-    pub fn last(&self) -> &FramePlan {
-        &self.plan
-    }
-
-    /// Plans `frame`.
-    ///
-    /// # Errors
-    /// A caster's transform that cannot be inverted, or more indices than 32 bits can count.
-    pub fn plan(&mut self, frame: &Frame<'_>) -> Result<&FramePlan, PlanError> {
-        let outcome = self.fill(frame);
-        if outcome.is_err() {
-            // Nothing half-planned may be drawn.
-            *self = Self::default();
-        }
-        outcome.map(|()| &self.plan)
-    }
-
-    fn fill(&mut self, frame: &Frame<'_>) -> Result<(), PlanError> {
-        self.plan.indices.clear();
-        self.plan.draws.clear();
-        self.plan.lights.resize_with(frame.lights.len(), LightPlan::default);
-        self.batching.resize_with(frame.lights.len(), batches::Batching::default);
-
-        // Which casters each light meets.
-        let mut used = 0;
-        for (l, light) in frame.lights.iter().enumerate() {
-            let plan = &mut self.plan.lights[l];
-            plan.batches.clear();
-            plan.stats = LightStats::default();
-            plan.scissor = cull::light_scissor(frame, light);
-            plan.stats.scissor = plan.scissor.unwrap_or_default();
-            for (c, caster) in frame.casters.iter().enumerate() {
-                plan.stats.casters += 1;
-                if let Some(reason) = cull::reason(frame, light, plan.scissor, c) {
-                    *plan.stats.culled.entry(reason).or_default() += 1;
-                    continue;
-                }
-                if used == self.pairs.len() {
-                    self.pairs.push(Pair::default());
-                }
-                self.pairs[used].aim(l, c, caster, &light.kind).ok_or(PlanError::Singular { caster: c })?;
-                used += 1;
-            }
-        }
-        self.pairs.truncate(used);
-
-        // Facing, then the division into batches, then silhouettes and caps.
-        self.pairs.par_iter_mut().for_each(|pair| pair.weigh(frame));
-        let lights: Vec<Range<usize>> = ranges(&self.pairs, frame.lights.len());
-        for (l, range) in lights.iter().enumerate() {
-            self.batching[l].divide(frame, l, &mut self.pairs[range.clone()]);
-        }
-        self.pairs.par_iter_mut().for_each(|pair| pair.build(frame));
-
-        for (l, range) in lights.into_iter().enumerate() {
-            self.plan.append(l, &self.pairs[range], frame)?;
-        }
-        Ok(())
-    }
-}
-
-/// The run of pairs that belongs to each light.
-fn ranges(pairs: &[Pair], lights: usize) -> Vec<Range<usize>> {
-    let mut start = 0;
-    (0..lights)
-        .map(|l| {
-            let end = start + pairs[start..].partition_point(|p| p.light_index <= l);
-            let range = start..end;
-            start = end;
-            range
-        })
-        .collect()
-}
-
-impl FramePlan {
-    /// Appends the pieces of one light's pairs, batch by batch.
-    fn append(&mut self, light: usize, pairs: &[Pair], frame: &Frame<'_>) -> Result<(), PlanError> {
-        let batches = pairs.iter().map(Pair::batches).max().unwrap_or(0);
-        for batch in 0..batches {
-            let first = self.draws.len() as u32;
-            for (pair, piece) in pairs.iter().flat_map(|pair| pair.pieces(batch).map(move |piece| (pair, piece))) {
-                let (volume, indices) = (&piece.volume, &piece.indices);
-                let base = self.indices.len();
-                if base + indices.len() > u32::MAX as usize {
-                    return Err(PlanError::TooManyIndices);
-                }
-                self.indices.extend_from_slice(indices);
-                let stats = &mut self.lights[light].stats;
-                let [sides, dark_cap, light_cap] = volume.triangles();
-                stats.triangles.sides += sides;
-                stats.triangles.dark_cap += dark_cap;
-                stats.triangles.light_cap += light_cap;
-                stats.vertices += indices.len() as u32;
-                let caster = &frame.casters[pair.caster];
-                self.draws.push(Draw {
-                    caster: pair.caster as u32,
-                    light: pair.light,
-                    cap: piece.cap.map_or(Vec4::ZERO, |u| caps::plane(u, pair.light, frame.view, caster)),
-                    volume: volume.shifted(base as u32),
-                    mirrored: caster.world_from_object.matrix3.determinant() < 0.0,
-                });
-            }
-            self.lights[light].batches.push(first..self.draws.len() as u32);
-        }
-        self.lights[light].stats.cases[2] = pairs.iter().filter(|p| p.batches() > 0).count() as u32;
-        Ok(())
-    }
+    /// Ranges of `indices` that differ from those of the planner's frame before; everything else is as it was.
+    pub changed: Vec<Range<u32>>,
 }

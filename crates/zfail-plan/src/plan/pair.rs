@@ -1,24 +1,47 @@
 //! One light and one caster: facing, silhouette and caps, kept while the light stands still in object space.
 
 use super::caps::Clusters;
-use super::{Caster, Frame};
+use super::meridians::{Crossings, Lines};
+use super::near_count;
+use super::off_screen::Parts;
+use super::placed::Placed;
+use super::pyramid::Pyramid;
+use super::store::Place;
 use crate::casting::{self, Casting, ObjectLight};
 use crate::scene::LightKind;
-use crate::view::Projection;
+use crate::scissor::Rectangle;
+use crate::topology::{NONE, Topology};
+use crate::view::{Projection, View};
 use crate::volume::{self, Volume};
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
+
+/// What becomes of a pair this frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Role {
+    /// Draws nothing.
+    #[default]
+    Idle,
+    /// Draws some of its parts in some pixels.
+    Active {
+        within: Rectangle,
+        parts: Parts,
+        /// Whether the count starts at the near rectangle.
+        z_pass: bool,
+    },
+}
 
 /// The state of one light-caster pair between frames.
 #[derive(Debug, Default)]
 pub(super) struct Pair {
-    pub light_index: usize,
-    pub caster: usize,
+    pub role: Role,
     pub light: ObjectLight,
     mesh: u64,
     /// Whether `weights` belong to `mesh`, `light` and `planar`.
     weighed: bool,
     castings: Vec<Casting>,
     pub weights: Vec<i8>,
+    /// How many triangles have a weight.
+    pub casting: usize,
     /// Batch of each casting triangle, parallel to `weights`; empty while everything is in batch 0.
     pub batch_of: Vec<u16>,
     /// Whether `pieces` belong to `weights` and `batch_of`.
@@ -26,28 +49,39 @@ pub(super) struct Pair {
     /// Whether dark caps are planes, because the view is orthographic.
     planar: bool,
     clusters: Clusters,
+    /// The first `live` are in use.
     pieces: Vec<Piece>,
+    live: usize,
     masked: Vec<i8>,
     cap: Vec<i8>,
-    /// The visible one of each group of coincident triangles for which `pieces` were built, and scratch.
+    /// The visible one of each group of coincident triangles for which light caps were built, and scratch.
     visible: Vec<u32>,
     now_visible: Vec<u32>,
+    crossings: Option<Box<(DAffine3, Lines, Crossings)>>,
+    near: Option<Box<(Pyramid, Option<u32>)>>,
 }
 
 /// A closed volume of some of the pair's triangles.
 #[derive(Debug, Default)]
 pub(super) struct Piece {
-    batch: u16,
+    pub batch: u16,
+    cluster: u16,
     /// Normal of its planar dark cap, object space; `None` for a cap at infinity.
     pub cap: Option<DVec3>,
+    /// The parts that `volume` has.
+    have: Parts,
     pub volume: Volume,
+    /// Ends of the light cap's triangles that may be missing from the depth buffer, within its two lists.
+    pub exposed: [u32; 2],
     pub indices: Vec<u32>,
+    pub place: Place,
+    pub fresh: bool,
 }
 
 impl Pair {
     /// Points the pair at a light and a caster; `None` if the caster's transform cannot be inverted.
-    pub fn aim(&mut self, light_index: usize, c: usize, caster: &Caster<'_>, kind: &LightKind) -> Option<()> {
-        let light = object_light(caster, kind)?;
+    pub fn aim(&mut self, caster: &Placed, kind: &LightKind) -> Option<()> {
+        let light = caster.object_light(kind)?;
         if self.mesh != caster.mesh || self.light != light {
             self.weighed = false;
         }
@@ -56,109 +90,248 @@ impl Pair {
         }
         self.mesh = caster.mesh;
         self.light = light;
-        self.light_index = light_index;
-        self.caster = c;
         Some(())
     }
 
+    /// Whether [`Self::weigh`] would have something to do.
+    pub fn is_stale(&self, view: &View) -> bool {
+        self.role != Role::Idle && !(self.weighed && self.planar == is_planar(view))
+    }
+
     /// Decides the facing of every triangle, unless it is known.
-    pub fn weigh(&mut self, frame: &Frame<'_>) {
-        // Clusters take the weight of triangles that no plane can cap.
-        let planar = matches!(frame.view.projection, Projection::Orthographic { .. });
-        if self.weighed && self.planar == planar {
+    pub fn weigh(&mut self, topology: &Topology, view: &View) {
+        if !self.is_stale(view) {
             return;
         }
-        self.planar = planar;
-        let topology = frame.casters[self.caster].topology;
+        // Clusters take the weight of triangles that no plane can cap.
+        self.planar = is_planar(view);
         casting::castings(topology, self.light, &mut self.castings);
         casting::weights(topology, &self.castings, self.light, &mut self.weights);
+        self.casting = self.weights.iter().filter(|&&c| c != 0).count();
         self.batch_of.clear();
         self.weighed = true;
+        self.unbuild();
+    }
+
+    fn unbuild(&mut self) {
         self.built = false;
+        self.near = None;
+        self.crossings = None;
     }
 
     /// Replaces the division into batches.
     pub fn divide(&mut self, batch_of: impl FnOnce(&mut Vec<u16>)) {
         batch_of(&mut self.batch_of);
-        self.built = false;
+        self.unbuild();
     }
 
     /// Puts everything into one batch.
     pub fn unite(&mut self) {
         if !self.batch_of.is_empty() {
             self.batch_of.clear();
-            self.built = false;
+            self.unbuild();
         }
     }
 
-    /// Builds the volume of every batch (and every planar cap), unless they are known.
-    pub fn build(&mut self, frame: &Frame<'_>) {
-        let caster = &frame.casters[self.caster];
-        let topology = caster.topology;
-        if !topology.twins.is_empty() {
-            let object_from_world = caster.world_from_object.inverse();
-            let eye = match frame.view.projection {
-                Projection::Perspective { .. } => object_from_world.transform_point3(frame.view.eye()).extend(1.0),
-                Projection::Orthographic { .. } => {
-                    object_from_world.transform_vector3(frame.view.world_from_view.matrix3.z_axis).extend(0.0)
-                }
-            };
-            volume::visible_twins(topology, eye, &mut self.now_visible);
-        }
-        if self.built && self.visible == self.now_visible {
+    /// Whether [`Self::build_sides`] has nothing to do.
+    pub fn is_built(&self) -> bool {
+        self.built || self.role == Role::Idle
+    }
+
+    /// Builds the sides of every batch (and every planar cap), unless they are known.
+    pub fn build_sides(&mut self, topology: &Topology) {
+        if self.is_built() {
             return;
         }
-        self.visible.clone_from(&self.now_visible);
         self.clusters.clear();
         if self.planar {
             self.clusters.fill(topology, &mut self.weights, self.light);
         }
         let batches = self.batch_of.iter().copied().max().unwrap_or(0);
-        let caps = self.clusters.normals.len().max(1) as u16;
+        let clusters = self.clusters.normals.len().max(1) as u16;
         let mut used = 0;
-        for (batch, cap) in (0..=batches).flat_map(|batch| (0..caps).map(move |cap| (batch, cap))) {
-            let mine = |t: usize| {
-                self.batch_of.get(t).is_none_or(|&b| b == batch) && self.clusters.of.get(t).is_none_or(|&c| c == cap)
-            };
-            self.masked.clear();
-            self.masked.extend(self.weights.iter().enumerate().map(|(t, &c)| if mine(t) { c } else { 0 }));
+        for (batch, cluster) in (0..=batches).flat_map(|batch| (0..clusters).map(move |cluster| (batch, cluster))) {
+            self.mask(batch, cluster);
             if self.masked.iter().all(|&c| c == 0) {
                 continue;
             }
             if used == self.pieces.len() {
                 self.pieces.push(Piece::default());
             }
-            volume::cap_weights(topology, &self.masked, &self.visible, &mut self.cap);
             let piece = &mut self.pieces[used];
-            piece.batch = batch;
-            piece.cap = self.clusters.normals.get(usize::from(cap)).copied();
+            (piece.batch, piece.cluster, piece.fresh) = (batch, cluster, true);
+            piece.cap = self.clusters.normals.get(usize::from(cluster)).copied();
+            piece.have = Parts { sides: true, ..Parts::default() };
             piece.indices.clear();
-            let converging = self.light.w == 0.0 && !self.planar;
-            piece.volume = volume::build(topology, &self.masked, &self.cap, converging, &mut piece.indices);
+            volume::sides(topology, &self.masked, is_converging(self.light, self.planar), &mut piece.indices);
+            let end = piece.indices.len() as u32;
+            piece.volume =
+                Volume { sides: 0..end, dark_cap: end..end, light_cap: end..end, light_cap_reversed: end..end };
+            piece.exposed = [end; 2];
             used += 1;
         }
-        self.pieces.truncate(used);
+        self.live = used;
         self.built = true;
+    }
+
+    /// The closed volumes that together are the pair's.
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces[..self.live]
+    }
+
+    /// One of [`Self::pieces`].
+    pub fn piece_mut(&mut self, p: usize) -> &mut Piece {
+        &mut self.pieces[p]
+    }
+
+    /// The weights of one batch and cluster, alone.
+    fn mask(&mut self, batch: u16, cluster: u16) {
+        let mine = |t: usize| {
+            self.batch_of.get(t).is_none_or(|&b| b == batch) && self.clusters.of.get(t).is_none_or(|&c| c == cluster)
+        };
+        self.masked.clear();
+        self.masked.extend(self.weights.iter().enumerate().map(|(t, &c)| if mine(t) { c } else { 0 }));
+    }
+
+    /// The number of layers over the near rectangle, if it is one number.
+    pub fn near_count(&mut self, topology: &Topology, pyramid: Pyramid) -> Option<u32> {
+        let [piece] = self.pieces() else { return None };
+        if piece.cap.is_some() || !self.batch_of.is_empty() {
+            return None;
+        }
+        if let Some(known) = &self.near
+            && known.0 == pyramid
+        {
+            return known.1;
+        }
+        let sides = &piece.indices[..piece.volume.sides.end as usize];
+        let stride = volume::side_len(is_converging(self.light, self.planar));
+        let count = near_count::near_count(topology, &self.weights, sides, stride, &pyramid);
+        self.near = Some(Box::new((pyramid, count)));
+        count
+    }
+
+    /// The caps that this frame draws.
+    fn wanted(&self, topology: &Topology) -> Parts {
+        let Role::Active { parts, z_pass, .. } = self.role else { return Parts::default() };
+        // Counting in front, covered triangles never count, and infinity neither.
+        let hidden = z_pass && topology.parts.iter().all(|part| part.covered);
+        Parts { sides: true, dark_cap: parts.dark_cap && !z_pass, light_cap: parts.light_cap && !hidden }
+    }
+
+    /// Whether [`Self::build_caps`] may have something to do.
+    pub fn lacks_caps(&self, topology: &Topology) -> bool {
+        let wanted = self.wanted(topology);
+        wanted.light_cap && !topology.twins.is_empty() || self.pieces().iter().any(|p| p.have.union(wanted) != p.have)
+    }
+
+    /// Adds the caps that this frame draws to the sides, unless they are there.
+    pub fn build_caps(&mut self, topology: &Topology, view: &View, caster: &Placed, fan: bool) {
+        let wanted = self.wanted(topology);
+        if wanted.light_cap && !topology.twins.is_empty() {
+            volume::visible_twins(topology, caster.object_eye(view), &mut self.now_visible);
+        }
+        let same_twins = self.visible == self.now_visible;
+        self.visible.clone_from(&self.now_visible);
+        let outside = self.light.w != 0.0 && caster.is_strictly_outside(self.light);
+        let single = self.batch_of.is_empty() && self.clusters.of.is_empty();
+        for p in 0..self.live {
+            let piece = &self.pieces[p];
+            let needed = piece.have.union(wanted);
+            if needed == piece.have && (same_twins || !needed.light_cap) {
+                continue;
+            }
+            if !single {
+                let (batch, cluster) = (piece.batch, piece.cluster);
+                self.mask(batch, cluster);
+            }
+            let weights = if single { &self.weights } else { &self.masked };
+            let piece = &mut self.pieces[p];
+            (piece.have, piece.fresh) = (needed, true);
+            let mark = |indices: &Vec<u32>| indices.len() as u32;
+            let indices = &mut piece.indices;
+            indices.truncate(piece.volume.sides.end as usize);
+            if needed.dark_cap && !is_converging(self.light, self.planar) {
+                let sides = indices.len() / volume::side_len(false);
+                let casting = weights.iter().filter(|&&c| c != 0).count();
+                if fan && outside && !self.planar && sides < casting {
+                    volume::dark_fan(0..indices.len(), indices);
+                } else {
+                    volume::dark_cap(topology, weights, indices);
+                }
+            }
+            piece.volume.dark_cap = piece.volume.sides.end..mark(indices);
+            let mut ranges = [0..0, 0..0];
+            if needed.light_cap {
+                volume::cap_weights(topology, weights, &self.visible, &mut self.cap);
+                let covered = |t: usize| {
+                    let part = topology.part_of[t];
+                    part != NONE && topology.parts[part as usize].covered
+                };
+                for (i, sign) in [(0, 1), (1, -1)] {
+                    let start = mark(indices);
+                    volume::light_cap(topology, &self.cap, sign, |t| !covered(t), indices);
+                    piece.exposed[i] = mark(indices);
+                    volume::light_cap(topology, &self.cap, sign, covered, indices);
+                    ranges[i] = start..mark(indices);
+                }
+            } else {
+                ranges = [mark(indices)..mark(indices), mark(indices)..mark(indices)];
+                piece.exposed = [mark(indices); 2];
+            }
+            [piece.volume.light_cap, piece.volume.light_cap_reversed] = ranges;
+        }
+    }
+
+    /// What a piece draws this frame, as ranges of its own list.
+    pub fn drawn(&self, piece: &Piece) -> Volume {
+        let Role::Active { parts, z_pass, .. } = self.role else { return Volume::default() };
+        let mut drawn = piece.volume.clone();
+        if !parts.sides {
+            drawn.sides.start = drawn.sides.end;
+        }
+        if !parts.dark_cap || z_pass {
+            drawn.dark_cap = drawn.sides.end..drawn.sides.end;
+        }
+        if !parts.light_cap {
+            drawn.light_cap.end = drawn.light_cap.start;
+            drawn.light_cap_reversed.end = drawn.light_cap_reversed.start;
+        } else if z_pass {
+            // Covered triangles never lie before the visible surface.
+            drawn.light_cap.end = piece.exposed[0];
+            drawn.light_cap_reversed.end = piece.exposed[1];
+        }
+        drawn
+    }
+
+    /// How often lines of directions cross the silhouette.
+    pub fn crossings(&mut self, topology: &Topology, world_from_object: &DAffine3, lines: Lines) -> &Crossings {
+        if self.crossings.as_ref().is_none_or(|known| (known.0, known.1) != (*world_from_object, lines)) {
+            let stride = volume::side_len(is_converging(self.light, self.planar));
+            let silhouette = self.pieces[..self.live].iter().flat_map(|piece| {
+                let sides = &piece.indices[..piece.volume.sides.end as usize];
+                sides.chunks_exact(stride).map(|side| [side[0] >> 1, side[1] >> 1])
+            });
+            let crossings = Crossings::of(topology, &self.weights, silhouette, world_from_object, self.light, lines);
+            self.crossings = Some(Box::new((*world_from_object, lines, crossings)));
+        }
+        self.crossings.as_ref().map_or(&Crossings::NONE, |known| &known.2)
     }
 
     /// One more than the last batch in which the pair draws anything.
     pub fn batches(&self) -> usize {
-        self.pieces.last().map_or(0, |p| p.batch as usize + 1)
-    }
-
-    /// What the pair draws in `batch`.
-    pub fn pieces(&self, batch: usize) -> impl Iterator<Item = &Piece> {
-        self.pieces.iter().filter(move |p| p.batch as usize == batch)
+        if self.role == Role::Idle {
+            return 0;
+        }
+        self.pieces().last().map_or(0, |p| p.batch as usize + 1)
     }
 }
 
-/// The light in the caster's object space, computed in f64 and rounded once.
-fn object_light(caster: &Caster<'_>, kind: &LightKind) -> Option<ObjectLight> {
-    let light = kind.homogeneous();
-    let object_from_world = caster.world_from_object.matrix3.inverse();
-    let to_object = object_from_world * (light.truncate() - caster.world_from_object.translation * light.w);
-    // Only the direction of a directional light matters; its length must not overflow f32.
-    let to_object = if light.w == 0.0 { to_object.try_normalize()? } else { to_object };
-    let rounded = to_object.extend(light.w).as_vec4();
-    rounded.is_finite().then_some(rounded)
+fn is_planar(view: &View) -> bool {
+    matches!(view.projection, Projection::Orthographic { .. })
+}
+
+/// Whether extruded vertices are one point.
+fn is_converging(light: ObjectLight, planar: bool) -> bool {
+    light.w == 0.0 && !planar
 }

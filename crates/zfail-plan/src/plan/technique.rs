@@ -1,4 +1,4 @@
-//! The algorithms by name.
+//! The algorithms by name, and the steps of which they are made.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,16 +6,21 @@ use std::str::FromStr;
 /// Which published algorithm decides what is drawn. All give the same verdict at every pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Technique {
-    /// The best there is: z-fail as in Everitt & Kilgard, without casters and pixels that the light cannot reach.
+    /// The best there is: every step of [`Measures`].
     #[default]
     Auto,
     /// Everitt & Kilgard 2002: every caster's whole volume by z-fail, nothing culled.
     EverittKilgard,
+    /// Lengyel 2002, "The Mechanics of Robust Stencil Shadows": z-pass for a light none of whose casters comes between
+    /// it and the near rectangle, z-fail otherwise, and a scissor around the light's sphere.
+    Lengyel,
+    /// McGuire et al. 2003: z-pass or z-fail by caster, parts culled, dark caps as fans, light bounds.
+    Mcguire,
 }
 
 impl Technique {
     /// Every technique, in the order of help texts.
-    pub const ALL: [Self; 2] = [Self::Auto, Self::EverittKilgard];
+    pub const ALL: [Self; 4] = [Self::Auto, Self::EverittKilgard, Self::Lengyel, Self::Mcguire];
 
     /// Its name on the command line.
     #[must_use]
@@ -23,8 +28,80 @@ impl Technique {
         match self {
             Self::Auto => "auto",
             Self::EverittKilgard => "everitt-kilgard",
+            Self::Lengyel => "lengyel",
+            Self::Mcguire => "mcguire",
         }
     }
+
+    /// The steps it takes.
+    #[must_use]
+    pub const fn measures(self) -> Measures {
+        let nothing = Measures {
+            reach: false,
+            off_screen: false,
+            z_pass: ZPass::Never,
+            near_count: false,
+            fan: false,
+            receivers: false,
+            occluders: 0,
+        };
+        let mcguire = Measures { reach: true, off_screen: true, z_pass: ZPass::ByCaster, fan: true, ..nothing };
+        match self {
+            Self::EverittKilgard => nothing,
+            Self::Lengyel => Measures { reach: true, z_pass: ZPass::ByLight, ..nothing },
+            Self::Mcguire => mcguire,
+            Self::Auto => Measures { near_count: true, receivers: true, occluders: 8, ..mcguire },
+        }
+    }
+}
+
+/// The steps beyond counting every volume by z-fail. Each can be taken or left; none changes a verdict.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Measures {
+    /// Leave out pixels and casters that the light cannot reach.
+    pub reach: bool,
+    /// Leave out volumes, and parts of volumes, that do not come into view.
+    pub off_screen: bool,
+    /// Where to count in front of the visible surface instead of behind it.
+    pub z_pass: ZPass,
+    /// Let casters that cover the near rectangle whole count in front too, from a number known beforehand.
+    pub near_count: bool,
+    /// Close volumes at infinity by a fan over the silhouette where that is valid.
+    pub fan: bool,
+    /// Draw a volume only where the surfaces that it can shadow lie (needs [`super::Frame::receivers`]).
+    pub receivers: bool,
+    /// Convex casters, per light, in whose shadow other casters are looked for to leave them out.
+    pub occluders: u8,
+}
+
+impl Default for Measures {
+    fn default() -> Self {
+        Technique::Auto.measures()
+    }
+}
+
+impl From<Technique> for Measures {
+    fn from(technique: Technique) -> Self {
+        technique.measures()
+    }
+}
+
+impl Measures {
+    /// Without what changes counts where verdicts stay.
+    pub(super) const fn keeping_counts(self) -> Self {
+        Self { reach: false, occluders: 0, ..self }
+    }
+}
+
+/// Where z-pass is preferred to z-fail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ZPass {
+    /// Nowhere.
+    Never,
+    /// For lights all of whose casters keep clear of the occlusion pyramid.
+    ByLight,
+    /// For every caster that keeps clear of the occlusion pyramid.
+    ByCaster,
 }
 
 impl fmt::Display for Technique {
@@ -52,6 +129,6 @@ pub enum Counting {
     /// Zero exactly where the light arrives, however many layers are in the way.
     #[default]
     Verdict,
-    /// The count of all casters modulo 256, nothing culled and nothing folded.
+    /// The count of all casters modulo 256 on every visible surface, no caster left out and nothing folded.
     Raw,
 }

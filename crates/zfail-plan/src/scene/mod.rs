@@ -6,12 +6,15 @@ mod bounds;
 mod light;
 mod material;
 mod mesh;
+mod pose;
 
 pub use bounds::Bounds;
 pub use light::{Light, LightKind};
 pub use material::{AlphaMode, Filter, Image, Material, Texture, TextureRef, Wrap};
 pub use mesh::{Mesh, Primitive};
+pub use pose::Pose;
 
+use crate::topology::Surface;
 use crate::view::Projection;
 use glam::{DAffine3, DVec3};
 
@@ -66,17 +69,6 @@ pub struct Camera {
     pub projection: Projection,
 }
 
-/// What moves in a scene: one moment of its placements, everything else staying as it is.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Pose {
-    /// [`Instance::world_from_object`] of every instance.
-    pub instances: Vec<DAffine3>,
-    /// [`Light::kind`] of every light.
-    pub lights: Vec<LightKind>,
-    /// [`Camera::world_from_view`] of every camera.
-    pub cameras: Vec<DAffine3>,
-}
-
 impl Scene {
     /// World-space bounds of the instances' vertices, including those that cast no shadow; empty for an empty scene.
     #[must_use]
@@ -96,7 +88,21 @@ impl Scene {
     /// Whether triangle `triangle` of mesh `mesh` blocks light at all: blended materials let it through.
     #[must_use]
     pub fn triangle_casts(&self, mesh: usize, triangle: usize) -> bool {
-        self.meshes[mesh].material_of(triangle).is_none_or(|m| self.materials[m].alpha != AlphaMode::Blend)
+        self.triangle_surface(mesh, triangle) != Surface::Through
+    }
+
+    /// What triangle `triangle` of mesh `mesh` is to light and to the depth buffer.
+    #[must_use]
+    pub fn triangle_surface(&self, mesh: usize, triangle: usize) -> Surface {
+        let Some(material) = self.meshes[mesh].material_of(triangle).map(|m| &self.materials[m]) else {
+            return Surface::Front;
+        };
+        match material.alpha {
+            AlphaMode::Blend => Surface::Through,
+            AlphaMode::Mask(_) => Surface::Partly,
+            AlphaMode::Opaque if material.double_sided => Surface::BothSides,
+            AlphaMode::Opaque => Surface::Front,
+        }
     }
 }
 

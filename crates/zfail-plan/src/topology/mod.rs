@@ -10,11 +10,13 @@
 //! nothing else, so shadow geometry and rendered geometry can never differ.
 
 mod closed;
+mod convex;
 mod embedded;
 mod parts;
 mod twins;
 mod weld;
 
+pub use convex::ConvexPart;
 pub use parts::{Part, Shape};
 pub use twins::same_winding;
 
@@ -55,6 +57,26 @@ pub enum TopologyError {
     },
 }
 
+/// What a triangle is to light and to the depth pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Surface {
+    /// Light passes through.
+    Through,
+    /// Blocks light; the depth pass draws it wherever its front is in view, and may cull its back.
+    Front,
+    /// Blocks light; the depth pass draws both its sides.
+    BothSides,
+    /// Blocks light; the depth pass may leave out some of it or all.
+    Partly,
+}
+
+impl From<bool> for Surface {
+    /// Whether it blocks light; the depth pass may cull its back.
+    fn from(casts: bool) -> Self {
+        if casts { Self::Front } else { Self::Through }
+    }
+}
+
 /// An undirected edge with the one or two triangles that meet there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Edge {
@@ -87,21 +109,26 @@ pub struct Topology {
     pub by_part: Vec<u32>,
     /// Groups of casting triangles over the same three points, in any order: duplicates and sheets with a back.
     pub twins: Vec<Vec<u32>>,
+    /// Its largest convex part, if it has one of few faces.
+    pub convex: Option<ConvexPart>,
+    bounds: Bounds,
     edges: Vec<Edge>,
     fans: Vec<Fan>,
     fan_triangles: Vec<u32>,
 }
 
 impl Topology {
-    /// Welds and connects a mesh. Triangles for which `casts` is false take no part in any volume.
+    /// Welds and connects a mesh. `surface` tells what a triangle is, or just whether it blocks light; those that do not
+    /// take no part in any volume.
     ///
     /// # Errors
     /// An index out of range, a non-finite coordinate, or more than 2^30 vertices or triangles.
-    pub fn new(
+    pub fn new<S: Into<Surface>>(
         positions: &[[f32; 3]],
         triangles: &[[u32; 3]],
-        casts: impl Fn(usize) -> bool,
+        surface: impl Fn(usize) -> S,
     ) -> Result<Self, TopologyError> {
+        let surface = |t: usize| -> Surface { surface(t).into() };
         for (what, count) in [("vertices", positions.len()), ("triangles", triangles.len())] {
             if count > 1 << 30 {
                 return Err(TopologyError::TooLarge { what, count });
@@ -113,7 +140,7 @@ impl Topology {
         let (positions, triangles) = weld::weld(positions, triangles)?;
         let mut uses = Vec::with_capacity(triangles.len() * 3);
         for (t, &[a, b, c]) in triangles.iter().enumerate() {
-            if a != b && b != c && c != a && casts(t) {
+            if a != b && b != c && c != a && surface(t) != Surface::Through {
                 for (from, to) in [(a, b), (b, c), (c, a)] {
                     let reversed = if from < to { 0 } else { REVERSED };
                     uses.push(([from.min(to), from.max(to)], t as u32 | reversed));
@@ -129,6 +156,8 @@ impl Topology {
             parts: Vec::new(),
             by_part: Vec::new(),
             twins: Vec::new(),
+            convex: None,
+            bounds: Bounds::EMPTY,
             edges: Vec::with_capacity(uses.len() / 2),
             fans: Vec::new(),
             fan_triangles: Vec::new(),
@@ -148,6 +177,9 @@ impl Topology {
         }
         parts::find(&mut topology);
         topology.twins = twins::find(&topology);
+        parts::find_covered(&mut topology, surface);
+        topology.convex = convex::largest(&topology);
+        topology.bounds = Bounds::of(topology.parts.iter().flat_map(|part| [part.bounds.min, part.bounds.max]));
         Ok(topology)
     }
 
@@ -202,8 +234,7 @@ impl Topology {
     /// Object-space bounds of the casting parts.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
-        let corners = self.parts.iter().flat_map(|part| [part.bounds.min, part.bounds.max]);
-        Bounds::of(corners)
+        self.bounds
     }
 
     /// How many edges have one, two and more triangles.
@@ -221,6 +252,7 @@ impl Topology {
             + size_of_val(&*self.part_of)
             + size_of_val(&*self.parts)
             + size_of_val(&*self.by_part)
+            + self.twins.iter().map(|group| size_of_val(group) + size_of_val(&**group)).sum::<usize>()
             + size_of_val(&*self.edges)
             + size_of_val(&*self.fans)
             + size_of_val(&*self.fan_triangles)

@@ -3,7 +3,7 @@
 //! In: the incidence. Out: one [`Part`] per edge-connected set of triangles, with the fact that decides its weights:
 //! whether it is the boundary of a simple solid.
 
-use super::{NONE, Topology, closed, embedded};
+use super::{NONE, Surface, Topology, closed, embedded};
 use crate::scene::Bounds;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -17,6 +17,8 @@ pub struct Part {
     pub shape: Shape,
     /// Object-space bounds.
     pub bounds: Bounds,
+    /// Whether no ray from outside its bounds crosses one of its triangles before it meets a surface that is drawn.
+    pub covered: bool,
 }
 
 /// What a connected part is, as far as casting cares.
@@ -97,11 +99,32 @@ pub(super) fn find(topology: &mut Topology) {
                 Shape::SelfIntersecting
             };
             let corners = triangles.iter().flat_map(|&t| topology_ref.corners(t as usize));
-            Part { triangles: range, shape, bounds: Bounds::of(corners) }
+            Part { triangles: range, shape, bounds: Bounds::of(corners), covered: false }
         })
         .collect();
     topology.parts = parts;
     debug_assert!(topology.part_of.iter().all(|&p| p == NONE || (p as usize) < topology.parts.len()));
+}
+
+/// Fills `covered`: a part whose triangles are drawn from both sides hides itself, and so does a solid whose front faces
+/// are drawn and look outward, for a ray leaves it through a back face only where it has entered through a front face.
+pub(super) fn find_covered(topology: &mut Topology, surface: impl Fn(usize) -> Surface) {
+    let covered = |part: usize| {
+        let all = |test: fn(Surface) -> bool| topology.triangles_of(part).iter().all(|&t| test(surface(t as usize)));
+        let outward = topology.parts[part].shape == Shape::Solid { inside: 1 };
+        all(|s| s == Surface::BothSides) || outward && all(|s| matches!(s, Surface::Front | Surface::BothSides))
+    };
+    let covered: Vec<bool> = (0..topology.parts.len()).map(covered).collect();
+    for (part, covered) in topology.parts.iter_mut().zip(covered) {
+        part.covered = covered;
+    }
+    // A light cap may be drawn by a twin of another part.
+    for group in &topology.twins {
+        let parts = group.iter().map(|&t| topology.part_of[t as usize] as usize);
+        if !parts.clone().all(|part| topology.parts[part].covered) {
+            parts.for_each(|part| topology.parts[part].covered = false);
+        }
+    }
 }
 
 /// Union-find with path halving.

@@ -9,6 +9,7 @@ mod builder;
 mod cathedral;
 mod container;
 mod jail;
+mod motion;
 mod nested;
 mod open;
 mod ortho;
@@ -22,6 +23,7 @@ mod stage;
 mod staircase;
 mod sun;
 
+use crate::animate::Animated;
 use zfail_plan::scene::Scene;
 
 /// A generated scene that [`scene`] can make.
@@ -71,6 +73,12 @@ pub fn scene(name: &str) -> Option<Scene> {
         "stage" => stage::scene(),
         _ => return None,
     })
+}
+
+/// The scene `name` with its animation, if it has one, or `None` if there is no scene of that name.
+#[must_use]
+pub fn animated(name: &str) -> Option<Animated> {
+    scene(name).map(motion::animated)
 }
 
 #[cfg(test)]

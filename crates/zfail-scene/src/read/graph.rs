@@ -4,12 +4,16 @@
 
 use super::error::{Result, invalid};
 use super::schema::{Node, Root};
+use crate::animate::Trs;
+use crate::placement::{is_moderate, unit_quaternion};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 /// World transforms and the order of visit. Nothing here recurses, so a chain of a million nodes is fine.
 pub(super) struct Graph {
     /// By node, including those outside the default scene.
     pub world_from_node: Vec<DAffine3>,
+    /// By node.
+    pub parent_from_node: Vec<DAffine3>,
     /// The default scene's nodes, parents before children, in the order of the file.
     pub visits: Vec<Visit>,
 }
@@ -34,9 +38,11 @@ impl Graph {
 
         let all = depth_first(nodes, &roots);
         let mut world_from_node = vec![DAffine3::IDENTITY; nodes.len()];
+        let mut parent_from_node = vec![DAffine3::IDENTITY; nodes.len()];
         for &i in &all {
+            parent_from_node[i] = local_transform(i, &nodes[i], notices)?;
             // Parents come first and have left their own transform here.
-            let world = world_from_node[i] * local_transform(i, &nodes[i], notices)?;
+            let world = world_from_node[i] * parent_from_node[i];
             if !is_moderate(&world) {
                 return Err(invalid(format!("nodes[{i}]"), "its world transform is beyond all measure"));
             }
@@ -57,13 +63,8 @@ impl Graph {
             Visit { node, end: at + 1 + descendants[node], casts_shadow }
         };
         let visits = depth_first(nodes, chosen).into_iter().enumerate().map(visit).collect();
-        Ok(Self { world_from_node, visits })
+        Ok(Self { world_from_node, parent_from_node, visits })
     }
-}
-
-/// Whether all entries are finite and so small that their products and squares are finite too.
-pub(super) fn is_moderate(m: &DAffine3) -> bool {
-    m.to_cols_array().iter().all(|x| x.abs() <= 1e30)
 }
 
 fn depth_first(nodes: &[Node], roots: &[usize]) -> Vec<usize> {
@@ -80,23 +81,19 @@ fn local_transform(i: usize, node: &Node, notices: &mut Vec<String>) -> Result<D
     if let Some(m) = node.matrix {
         return affine(&m).ok_or_else(|| invalid(format!("nodes[{i}].matrix"), "its last row is not 0 0 0 1"));
     }
-    let quaternion = node.rotation.map_or(DQuat::IDENTITY, DQuat::from_array);
-    let rotation = unit_quaternion(quaternion).unwrap_or_else(|| {
+    if node.rotation.is_some_and(|q| unit_quaternion(DQuat::from_array(q)).is_none()) {
         notices.push(format!("nodes[{i}].rotation has no length; the node is not rotated"));
-        DQuat::IDENTITY
-    });
-    let scale = node.scale.map_or(DVec3::ONE, DVec3::from);
-    let translation = node.translation.map_or(DVec3::ZERO, DVec3::from);
-    Ok(DAffine3::from_scale_rotation_translation(scale, rotation, translation))
+    }
+    Ok(properties(node).affine())
 }
 
-/// `q` at unit length. One that is a unit quaternion but for rounding stays bit for bit.
-pub(super) fn unit_quaternion(q: DQuat) -> Option<DQuat> {
-    let length = q.length();
-    if (length - 1.0).abs() <= 4.0 * f64::EPSILON {
-        return Some(q);
+/// Translation, rotation and scale of a node that has no matrix.
+pub(super) fn properties(node: &Node) -> Trs {
+    Trs {
+        translation: node.translation.map_or(DVec3::ZERO, DVec3::from),
+        rotation: node.rotation.map(DQuat::from_array).and_then(unit_quaternion).unwrap_or(DQuat::IDENTITY),
+        scale: node.scale.map_or(DVec3::ONE, DVec3::from),
     }
-    (length.is_finite() && length > 1e-12).then(|| q / length)
 }
 
 /// A column-major 4x4 matrix whose last row is (0, 0, 0, 1) but for rounding.

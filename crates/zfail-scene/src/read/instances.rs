@@ -2,21 +2,28 @@
 //!
 //! In: the document, its node hierarchy and the scene's materials. Out: meshes and instances in the scene.
 
+use super::animations::Motion;
 use super::document::Document;
 use super::error::{Result, invalid};
-use super::graph::{Graph, Visit, affine, is_moderate, unit_quaternion};
-use super::mesh::{self, Built, MAX_COORDINATE, Pose};
+use super::graph::{Graph, Visit, affine};
+use super::mesh::{self, Built, Pose};
 use super::schema::{self, Instancing};
-use crate::placement::{Rank, flatten, rank};
+use crate::animate::MAX_COORDINATE;
+use crate::placement::{Rank, flatten, invertible, is_moderate, rank, unit_quaternion};
 use glam::{DAffine3, DQuat, DVec3};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use std::ops::Range;
 use zfail_plan::scene::{Instance, Scene};
 
-/// Adds the default scene's meshes and instances to `scene`. Returns, per visit, which instances its node and its
-/// descendants hold.
-pub(super) fn read(document: &Document<'_>, graph: &Graph, scene: &mut Scene) -> Result<Vec<Range<usize>>> {
+/// Adds the default scene's meshes and instances to `scene`, and hangs those that move on the rig. Returns, per visit,
+/// which instances its node and its descendants hold.
+pub(super) fn read(
+    document: &Document<'_>,
+    graph: &Graph,
+    motion: &mut Motion,
+    scene: &mut Scene,
+) -> Result<Vec<Range<usize>>> {
     let (poses, pose_of_visit) = poses(document, graph)?;
     let joints = joints(document, graph)?;
     let built: Vec<Built> = poses
@@ -29,7 +36,7 @@ pub(super) fn read(document: &Document<'_>, graph: &Graph, scene: &mut Scene) ->
     check_unused(document, &poses)?;
     scene.notices.extend(built.iter().flat_map(|b| b.notices.iter().cloned()));
 
-    let mut placer = Placer { document, scene, scene_mesh: vec![None; built.len()], built };
+    let mut placer = Placer { document, motion, scene, scene_mesh: vec![None; built.len()], built };
     let mut first_instance = Vec::with_capacity(graph.visits.len() + 1);
     for (visit, pose) in graph.visits.iter().zip(pose_of_visit) {
         first_instance.push(placer.scene.instances.len());
@@ -95,10 +102,21 @@ fn check_unused(document: &Document<'_>, poses: &[Pose]) -> Result<()> {
 
 struct Placer<'a> {
     document: &'a Document<'a>,
+    motion: &'a mut Motion,
     scene: &'a mut Scene,
     built: Vec<Built>,
     /// Where in the scene a built mesh has been moved, once an instance has needed it.
     scene_mesh: Vec<Option<usize>>,
+}
+
+/// Where a node puts its mesh.
+struct Site<'a> {
+    visit: &'a Visit,
+    world_from_node: DAffine3,
+    /// The node's place in the rig, if it moves.
+    rig_node: Option<usize>,
+    /// Index of the mesh among those built.
+    pose: usize,
 }
 
 impl Placer<'_> {
@@ -106,47 +124,57 @@ impl Placer<'_> {
         let node = &self.document.root.nodes[visit.node];
         let name = node.name.clone().unwrap_or_else(|| format!("node {}", visit.node));
         // Skinning has taken the mesh to the world; its own node's transform does not count.
-        let world_from_node = if skinned { DAffine3::IDENTITY } else { world_from_node };
+        let (world_from_node, rig_node) =
+            if skinned { (DAffine3::IDENTITY, None) } else { (world_from_node, self.motion.rig_node[visit.node]) };
+        let site = Site { visit, world_from_node, rig_node, pose };
         match &node.extensions.instancing {
-            None => self.place(name, visit, world_from_node, pose),
+            None => self.place(name, &site, &DAffine3::IDENTITY),
             Some(instancing) => {
                 let path = format!("nodes[{}].extensions.EXT_mesh_gpu_instancing", visit.node);
                 for (i, local) in instance_transforms(self.document, instancing, &path)?.into_iter().enumerate() {
-                    self.place(format!("{name} #{i}"), visit, world_from_node * local, pose)?;
+                    self.place(format!("{name} #{i}"), &site, &local)?;
                 }
                 Ok(())
             }
         }
     }
 
-    fn place(&mut self, name: String, visit: &Visit, world_from_node: DAffine3, pose: usize) -> Result<()> {
-        let (origin, bounds) = (self.built[pose].origin, self.built[pose].bounds);
+    fn place(&mut self, name: String, site: &Site<'_>, node_from_instance: &DAffine3) -> Result<()> {
+        let (origin, bounds) = (self.built[site.pose].origin, self.built[site.pose].bounds);
         if bounds.is_empty() {
             return Ok(());
         }
-        let world_from_object = world_from_node * DAffine3::from_translation(origin);
+        let element = || format!("nodes[{}]", site.visit.node);
+        let node_from_object = *node_from_instance * DAffine3::from_translation(origin);
+        let world_from_object = site.world_from_node * node_from_object;
         let reach = bounds.transformed(&world_from_object);
         if !(reach.min.abs().max_element() <= MAX_COORDINATE && reach.max.abs().max_element() <= MAX_COORDINATE) {
-            let problem = format!("places its mesh more than {MAX_COORDINATE:e} m from the origin");
-            return Err(invalid(format!("nodes[{}]", visit.node), problem));
+            return Err(invalid(element(), format!("places its mesh more than {MAX_COORDINATE:e} m from the origin")));
         }
-        let (mesh, world_from_object) = match rank(&world_from_object.matrix3) {
-            Rank::Full => (self.scene_mesh(pose), world_from_object),
-            Rank::Plane => {
-                let mesh = self.scene_mesh[pose].map_or(&self.built[pose].mesh, |m| &self.scene.meshes[m]);
-                let element = || format!("nodes[{}]", visit.node);
+        let (mesh, world_from_object) = match (rank(&world_from_object.matrix3), site.rig_node) {
+            (Rank::Full, None) => (self.scene_mesh(site.pose), world_from_object),
+            (_, Some(rig_node)) => {
+                // It may be flat at rest and have its shape later.
+                let matrix3 = invertible(&world_from_object.matrix3);
+                let rest = DAffine3 { matrix3, translation: world_from_object.translation };
+                let index = self.scene.instances.len();
+                self.motion.rig.carry_instance(index, rig_node, node_from_object, &bounds, rest);
+                (self.scene_mesh(site.pose), rest)
+            }
+            (Rank::Plane, None) => {
+                let mesh = self.scene_mesh[site.pose].map_or(&self.built[site.pose].mesh, |m| &self.scene.meshes[m]);
                 self.document.budget.charge(mesh.positions.len() as u64, 100, element)?;
                 let (flat, origin) = flatten(mesh, &world_from_object);
                 self.scene.notices.push(format!("node \"{name}\" flattens its mesh into a plane"));
                 self.scene.meshes.push(flat);
                 (self.scene.meshes.len() - 1, DAffine3::from_translation(origin))
             }
-            Rank::Line => {
+            (Rank::Line, None) => {
                 self.scene.notices.push(format!("node \"{name}\" shrinks its mesh to a line or a point: not drawn"));
                 return Ok(());
             }
         };
-        let casts_shadow = visit.casts_shadow;
+        let casts_shadow = site.visit.casts_shadow;
         self.scene.instances.push(Instance { name, mesh, world_from_object, casts_shadow });
         Ok(())
     }

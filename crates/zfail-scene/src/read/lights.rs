@@ -1,10 +1,13 @@
 //! Lights and cameras where the nodes put them.
 
+use super::animations::Motion;
 use super::error::Result;
 use super::graph::Graph;
 use super::limits::Budget;
 use super::schema::{self, LightType, Root};
-use glam::{DAffine3, DMat3, DVec3};
+use crate::animate::placed;
+use crate::placement::rigid;
+use glam::{DAffine3, DVec3};
 use rustc_hash::FxHashMap;
 use serde_json::Value;
 use std::f64::consts::FRAC_PI_2;
@@ -12,12 +15,14 @@ use std::ops::Range;
 use zfail_plan::scene::{Camera, Light, LightKind, Scene};
 use zfail_plan::view::Projection;
 
-/// Adds the default scene's lights to `scene`; `held` are the instances at and below each visited node.
+/// Adds the default scene's lights to `scene`, and hangs those that move on the rig; `held` are the instances at and
+/// below each visited node.
 pub(super) fn read_lights(
     root: &Root,
     graph: &Graph,
     held: &[Range<usize>],
     budget: &Budget,
+    motion: &mut Motion,
     scene: &mut Scene,
 ) -> Result<()> {
     let Some(lights) = &root.extensions.lights else { return Ok(()) };
@@ -46,9 +51,13 @@ pub(super) fn read_lights(
         }
         excluded.sort_unstable();
         excluded.dedup();
+        let kind = light_kind(source, &graph.world_from_node[visit.node]);
+        if let Some(rig_node) = motion.rig_node[visit.node] {
+            motion.rig.carry_light(scene.lights.len(), rig_node, DAffine3::IDENTITY, kind);
+        }
         scene.lights.push(Light {
             name,
-            kind: light_kind(source, &graph.world_from_node[visit.node]),
+            kind,
             color: source.color.map(positive),
             intensity: positive(source.intensity),
             excluded,
@@ -66,10 +75,9 @@ fn positive(x: f64) -> f32 {
 }
 
 fn light_kind(light: &schema::Light, world_from_node: &DAffine3) -> LightKind {
-    let position = world_from_node.translation;
-    let direction = (-world_from_node.matrix3.z_axis).try_normalize().unwrap_or(DVec3::NEG_Z);
+    let (position, direction) = (DVec3::ZERO, DVec3::NEG_Z);
     let range = light.range.filter(|&range| range > 0.0).unwrap_or(f64::INFINITY);
-    match light.kind {
+    let at_origin = match light.kind {
         LightType::Point => LightKind::Point { position, range },
         LightType::Directional => LightKind::Directional { direction },
         LightType::Spot => {
@@ -77,11 +85,12 @@ fn light_kind(light: &schema::Light, world_from_node: &DAffine3) -> LightKind {
             let inner = light.spot.inner_cone_angle.clamp(0.0, outer * 0.999);
             LightKind::Spot { position, direction, range, inner, outer }
         }
-    }
+    };
+    placed(&at_origin, world_from_node)
 }
 
-/// Adds the default scene's cameras to `scene`.
-pub(super) fn read_cameras(root: &Root, graph: &Graph, scene: &mut Scene) {
+/// Adds the default scene's cameras to `scene`, and hangs those that move on the rig.
+pub(super) fn read_cameras(root: &Root, graph: &Graph, motion: &mut Motion, scene: &mut Scene) {
     for visit in &graph.visits {
         let node = &root.nodes[visit.node];
         let Some(index) = node.camera else { continue };
@@ -92,39 +101,18 @@ pub(super) fn read_cameras(root: &Root, graph: &Graph, scene: &mut Scene) {
             (None, None) => continue,
         };
         let name = source.name.clone().or_else(|| node.name.clone());
-        scene.cameras.push(Camera {
-            name: name.unwrap_or_else(|| format!("camera {}", scene.cameras.len())),
-            world_from_view: rigid(&graph.world_from_node[visit.node]),
-            projection,
-        });
+        let world_from_view = rigid(&graph.world_from_node[visit.node]);
+        if let Some(rig_node) = motion.rig_node[visit.node] {
+            motion.rig.carry_camera(scene.cameras.len(), rig_node, DAffine3::IDENTITY, world_from_view);
+        }
+        let name = name.unwrap_or_else(|| format!("camera {}", scene.cameras.len()));
+        scene.cameras.push(Camera { name, world_from_view, projection });
     }
-}
-
-/// Rotation and translation of `m`, without scale and shear. It keeps the way the camera looks and, as near as can be,
-/// its up; a mirrored camera has left and right exchanged, since a view space is right-handed.
-pub(crate) fn rigid(m: &DAffine3) -> DAffine3 {
-    let back = m.matrix3.z_axis.try_normalize().unwrap_or(DVec3::Z);
-    let up = m.matrix3.y_axis.reject_from_normalized(back);
-    let up = up.try_normalize().unwrap_or_else(|| back.any_orthonormal_vector());
-    DAffine3 { matrix3: DMat3::from_cols(up.cross(back), up, back), translation: m.translation }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn cameras_become_rigid() {
-        let turn = DMat3::from_euler(glam::EulerRot::YXZ, 0.7, -0.3, 0.1);
-        for scale in [DVec3::ONE, DVec3::new(-1.0, 1.0, 1.0), DVec3::new(2.0, 1e-4, 3.0), DVec3::new(0.0, 1.0, 1.0)] {
-            let m = DAffine3 { matrix3: turn * DMat3::from_diagonal(scale), translation: DVec3::ONE };
-            let r = rigid(&m);
-            assert!((r.matrix3 * r.matrix3.transpose()).abs_diff_eq(DMat3::IDENTITY, 1e-12), "{scale}");
-            assert!((r.matrix3.determinant() - 1.0).abs() < 1e-12, "{scale}: right-handed");
-            assert!(r.matrix3.z_axis.distance(turn.z_axis) < 1e-12 && r.matrix3.y_axis.distance(turn.y_axis) < 1e-12);
-        }
-        assert!(rigid(&DAffine3::from_scale(DVec3::ZERO)).is_finite());
-    }
 
     #[test]
     fn light_parameters_are_clamped() {

@@ -8,6 +8,7 @@ use super::error::{Result, invalid};
 use super::schema::{self, Mode};
 use super::surface::{Surface, read_triangles};
 use super::{pose, shading};
+use crate::animate::MAX_COORDINATE;
 use crate::placement::{localize, recenter};
 use glam::{DAffine3, DVec2, DVec3};
 use zfail_plan::scene::{Bounds, Material, Mesh, Primitive, TextureRef};
@@ -36,9 +37,6 @@ pub(super) struct Built {
 
 /// Bytes that a vertex occupies while its mesh is built: the attributes twice over, in both precisions.
 const VERTEX_COST: u64 = 200;
-
-/// Coordinates beyond this, in metres, are refused: their squares must stay finite in single precision.
-pub(super) const MAX_COORDINATE: f64 = 1e15;
 
 /// Builds the mesh for `pose`. `joints` take the mesh's space to the world.
 pub(super) fn build(

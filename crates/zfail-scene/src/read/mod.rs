@@ -2,7 +2,7 @@
 //!
 //! Data flow one way: `container` (bytes to JSON and binary chunk) -> `schema` (typed JSON) -> `extensions` and
 //! `validate` (nothing is trusted before) -> `document` (buffers and accessors) -> `images`, `materials`
-//! -> `graph` (world transforms) -> `surface` -> `pose` -> `shading` -> `mesh` -> `instances`, `lights`.
+//! -> `graph` (world transforms) -> `animations` -> `surface` -> `pose` -> `shading` -> `mesh` -> `instances`, `lights`.
 //!
 //! Whatever the bytes are, the result is a scene that satisfies the scene types' invariants or a [`LoadError`]; what
 //! was repaired or left out is in [`Scene::notices`].
@@ -10,18 +10,22 @@
 //! # Repairs
 //! - Left out: points and lines, primitives without positions, what remains of a triangle list after the last whole
 //!   triangle, meshes that a node's scale shrinks to a line or a point, images other than PNG and JPEG or damaged
-//!   inside, every extension that only changes looks.
+//!   inside, every extension that only changes looks, animations of morph weights, of what extensions add and of nodes
+//!   that have a matrix.
 //! - Replaced: missing normals (flat ones, on vertices of their own) and those without a direction, texture
 //!   coordinates and colours that are not finite, rotations without length, joint weights that do not add up to 1.
 //! - Approximated: specular-glossiness (diffuse colour alone) and transmission (blending).
 //! - Tolerated: a byte order mark, misaligned accessors, missing bounds of accessors, bytes after the end, a mesh or
-//!   a skin that nothing uses.
+//!   a skin that nothing uses, key frames before time 0 and two at the same time.
 //! - Baked into meshes of their own, in world space: skins (in their rest pose, morph targets at their default
 //!   weights) and meshes that their node flattens into a plane.
 //! - Moved: a mesh far from its own origin, exactly, with the translation in its instances.
+//! - While an animation flattens a mesh or makes it vanish, it keeps an invisible thickness, so that transforms stay
+//!   invertible; what an animation takes beyond 10^15 m stays at its place of rest meanwhile.
 //!
 //! Everything else that breaks the specification and bears on the scene is an error.
 
+mod animations;
 mod container;
 mod document;
 mod error;
@@ -43,6 +47,7 @@ mod validate;
 pub use error::{Fault, LoadError};
 pub use limits::Limits;
 
+use crate::animate::Animated;
 use document::Document;
 use error::{Result, invalid, one_line};
 use graph::Graph;
@@ -64,8 +69,6 @@ pub struct FileInfo {
     pub extensions_used: Vec<String>,
     /// Extensions that the file declares indispensable.
     pub extensions_required: Vec<String>,
-    /// Names of the animations, invented where missing.
-    pub animations: Vec<String>,
     /// Number of skins.
     pub skins: usize,
     /// Meshes in the file, including those outside the default scene.
@@ -98,10 +101,18 @@ pub fn load_with(path: &Path, limits: &Limits) -> std::result::Result<Scene, Loa
 /// # Errors
 /// As [`load`].
 pub fn load_with_info(path: &Path, limits: &Limits) -> std::result::Result<(Scene, FileInfo), LoadError> {
+    load_animated(path, limits).map(|(animated, info)| (animated.scene, info))
+}
+
+/// [`load_with_info`] with the file's animations.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_animated(path: &Path, limits: &Limits) -> std::result::Result<(Animated, FileInfo), LoadError> {
     read(path, limits).map_err(|fault| LoadError { file: path.into(), fault })
 }
 
-fn read(path: &Path, limits: &Limits) -> Result<(Scene, FileInfo)> {
+fn read(path: &Path, limits: &Limits) -> Result<(Animated, FileInfo)> {
     let budget = Budget::new(*limits);
     let length = uri::regular_file_length(path).map_err(|problem| Fault::Unreadable(io::Error::other(problem)))?;
     budget.charge(length, 1, || "the file".into())?;
@@ -121,15 +132,16 @@ fn read(path: &Path, limits: &Limits) -> Result<(Scene, FileInfo)> {
     let mut scene = Scene { name, notices, ..Scene::default() };
     read_materials(&document, folder, &mut scene)?;
     let graph = Graph::new(&document.root, &mut scene.notices)?;
-    let held = instances::read(&document, &graph, &mut scene)?;
-    lights::read_lights(&document.root, &graph, &held, &document.budget, &mut scene)?;
-    lights::read_cameras(&document.root, &graph, &mut scene);
+    let mut motion = animations::read(&document, &graph, &mut scene.notices)?;
+    let held = instances::read(&document, &graph, &mut motion, &mut scene)?;
+    lights::read_lights(&document.root, &graph, &held, &document.budget, &mut motion, &mut scene)?;
+    lights::read_cameras(&document.root, &graph, &mut motion, &mut scene);
     read_surroundings(&document.root, &mut scene);
     if scene.instances.is_empty() {
         scene.notices.push("the scene has no triangles".into());
     }
     tidy(&mut scene.notices);
-    Ok((scene, info))
+    Ok((Animated { scene, animations: motion.animations, rig: motion.rig }, info))
 }
 
 /// Parsed JSON is larger than its text: `{}` may become a material. Commas bound the other values.
@@ -191,15 +203,12 @@ fn tidy(notices: &mut Vec<String>) {
 
 impl FileInfo {
     fn of(root: &Root) -> Self {
-        let animation =
-            |(i, a): (usize, &schema::Animation)| a.name.clone().unwrap_or_else(|| format!("animation {i}"));
         let morphed = |mesh: &&schema::Mesh| mesh.primitives.iter().any(|p| !p.targets.is_empty());
         Self {
             version: root.asset.version.clone(),
             generator: root.asset.generator.clone(),
             extensions_used: root.extensions_used.clone(),
             extensions_required: root.extensions_required.clone(),
-            animations: root.animations.iter().enumerate().map(animation).collect(),
             skins: root.skins.len(),
             meshes: root.meshes.len(),
             nodes: root.nodes.len(),

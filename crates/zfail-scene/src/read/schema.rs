@@ -5,6 +5,7 @@
 //! The `gltf` crate's own types are not used here because they hold node transforms in single precision, which is
 //! 6 cm at 10^6 m, and because their accessors panic on invalid indices.
 
+use crate::animate::Interpolation;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_json::Value;
@@ -503,6 +504,29 @@ pub(super) struct Buffer {
 #[serde(default)]
 pub(super) struct Animation {
     pub name: Option<String>,
+    pub channels: Vec<Channel>,
+    pub samplers: Vec<AnimationSampler>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Channel {
+    pub sampler: usize,
+    pub target: ChannelTarget,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct ChannelTarget {
+    /// Absent where an extension says what is moved.
+    pub node: Option<usize>,
+    pub path: String,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct AnimationSampler {
+    pub input: usize,
+    pub output: usize,
+    #[serde(default)]
+    pub interpolation: Interpolation,
 }
 
 fn one() -> f64 {

@@ -16,6 +16,7 @@ pub(super) fn check(root: &Root) -> Result<()> {
     check.scene_graph()?;
     check.meshes()?;
     check.skins()?;
+    check.animations()?;
     check.materials()?;
     check.data()?;
     root.cameras.iter().enumerate().try_for_each(|(i, camera)| projection(i, camera))
@@ -171,6 +172,23 @@ impl References<'_> {
             let count = root.accessors[matrices].count;
             if count < skin.joints.len() as u64 {
                 return Err(invalid(element, format!("has {count} matrices for {} joints", skin.joints.len())));
+            }
+        }
+        Ok(())
+    }
+
+    fn animations(&self) -> Result<()> {
+        let root = self.0;
+        for (i, animation) in root.animations.iter().enumerate() {
+            for (j, sampler) in animation.samplers.iter().enumerate() {
+                let path = format!("animations[{i}].samplers[{j}]");
+                within(sampler.input, root.accessors.len(), "accessors", format_args!("{path}.input"))?;
+                within(sampler.output, root.accessors.len(), "accessors", format_args!("{path}.output"))?;
+            }
+            for (j, channel) in animation.channels.iter().enumerate() {
+                let path = format!("animations[{i}].channels[{j}]");
+                within(channel.sampler, animation.samplers.len(), "samplers", format_args!("{path}.sampler"))?;
+                optional(channel.target.node, root.nodes.len(), "nodes", format_args!("{path}.target.node"))?;
             }
         }
         Ok(())

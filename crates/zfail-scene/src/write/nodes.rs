@@ -1,6 +1,7 @@
 //! Nodes in the order of the scene: instances, lights, cameras.
 
 use super::{Document, unskew};
+use crate::placement::light_placement;
 use glam::{DAffine3, DMat3, DVec3};
 use rustc_hash::{FxHashMap, FxHashSet};
 use serde_json::{Value, json};
@@ -114,23 +115,6 @@ fn light_json(light: &Light) -> Value {
         json["range"] = json!(range);
     }
     json
-}
-
-/// Where a light's node stands; it shines along its -z axis.
-fn light_placement(kind: &LightKind) -> DAffine3 {
-    let (translation, direction) = match *kind {
-        LightKind::Point { position, .. } => (position, DVec3::NEG_Z),
-        LightKind::Spot { position, direction, .. } => (position, direction),
-        LightKind::Directional { direction } => (DVec3::ZERO, direction),
-    };
-    let matrix3 = if direction == DVec3::NEG_Z {
-        DMat3::IDENTITY
-    } else {
-        let (x, y) = direction.any_orthonormal_pair();
-        // The pair is right-handed with the direction, the axes must be with its opposite.
-        DMat3::from_cols(y, x, -direction)
-    };
-    DAffine3 { matrix3, translation }
 }
 
 /// The camera and its placement. An orthographic one whose near plane is behind the eye is moved back to it.

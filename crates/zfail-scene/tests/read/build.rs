@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use tempfile::TempDir;
 use zfail_plan::glam::DMat3;
 use zfail_plan::scene::Scene;
-use zfail_scene::{Limits, LoadError};
+use zfail_scene::{Animated, Limits, LoadError};
 
 /// A glTF document under construction.
 #[derive(Clone)]
@@ -93,6 +93,11 @@ impl Gltf {
         load_bytes(&self.glb(), &Limits::default())
     }
 
+    /// The scene with its animations, which must load.
+    pub fn animated(&self) -> Animated {
+        load_animated_bytes(&self.glb(), &Limits::default()).unwrap_or_else(|e| panic!("{e}"))
+    }
+
     /// The scene, which must load.
     pub fn scene(&self) -> Scene {
         self.load().unwrap_or_else(|e| panic!("{e}"))
@@ -132,10 +137,14 @@ pub fn glb(json: &[u8], bin: &[u8]) -> Vec<u8> {
 }
 
 pub fn load_bytes(bytes: &[u8], limits: &Limits) -> Result<Scene, LoadError> {
+    load_animated_bytes(bytes, limits).map(|animated| animated.scene)
+}
+
+pub fn load_animated_bytes(bytes: &[u8], limits: &Limits) -> Result<Animated, LoadError> {
     let folder = TempDir::new().unwrap();
     let path: PathBuf = folder.path().join("test.glb");
     fs::write(&path, bytes).unwrap();
-    zfail_scene::load_with(&path, limits)
+    zfail_scene::load_animated(&path, limits).map(|(animated, _)| animated)
 }
 
 /// Asserts what the scene types promise, whatever the file was.

@@ -1,6 +1,6 @@
 //! Files made to do harm: the answer is an error, in bounded time and memory.
 
-use crate::build::{Gltf, TRIANGLE, assert_sound, glb, load_bytes};
+use crate::build::{Gltf, TRIANGLE, assert_sound, glb, load_animated_bytes, load_bytes};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -178,6 +178,18 @@ fn rich() -> Gltf {
     ]);
     gltf.json["scenes"] = json!([{"nodes": [0, 3, 4, 5]}]);
     gltf.json["scene"] = json!(0);
+    let times = gltf.floats(&[[0.0], [1.0]]);
+    let vectors = gltf.floats(&[[1.0, 0.0, 2.0], [-1.0, 1.0, 3.0]]);
+    let turns = gltf.bytes(&[[0, 0, 0, 255], [0, 255, 0, 0]]);
+    gltf.json["accessors"][turns]["normalized"] = json!(true);
+    let spline = gltf.floats(&[[0.5, 0.0, 1.0]; 6]);
+    gltf.json["animations"] = json!([{"name": "all", "samplers": [
+        {"input": times, "output": vectors}, {"input": times, "output": turns, "interpolation": "STEP"},
+        {"input": times, "output": spline, "interpolation": "CUBICSPLINE"}], "channels": [
+        {"sampler": 0, "target": {"node": 1, "path": "translation"}},
+        {"sampler": 1, "target": {"node": 4, "path": "rotation"}},
+        {"sampler": 0, "target": {"node": 5, "path": "scale"}},
+        {"sampler": 2, "target": {"node": 3, "path": "translation"}}]}]);
     gltf.json["buffers"] = json!([{"byteLength": gltf.bin.len()}]);
     gltf
 }
@@ -211,9 +223,16 @@ fn survive(bytes: &[u8], what: &dyn Fn() -> String) -> bool {
     let start = Instant::now();
     let limits = Limits { bytes: 64 << 20, image_side: 1024 };
     let result = std::panic::catch_unwind(|| {
-        load_bytes(bytes, &limits).map(|mut scene| {
-            assert_sound(&scene);
-            zfail_scene::complete(&mut scene);
+        load_animated_bytes(bytes, &limits).map(|mut animated| {
+            assert_sound(&animated.scene);
+            let mut scene = animated.scene.clone();
+            for (i, animation) in animated.animations.iter().enumerate() {
+                for share in [0.0, 0.3, 0.9] {
+                    scene.set_pose(&animated.pose(i, share * animation.duration));
+                    assert_sound(&scene);
+                }
+            }
+            zfail_scene::complete(&mut animated.scene);
         })
     });
     let loaded = result.unwrap_or_else(|_| panic!("panic: {}", what()));

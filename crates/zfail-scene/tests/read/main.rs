@@ -1,5 +1,6 @@
 //! Tests of the glTF reader through its public interface.
 
+mod animating;
 mod build;
 mod files;
 mod geometry;

@@ -3,7 +3,8 @@
 
 use wgpu::util::DeviceExt;
 use zfail::glam::DAffine3;
-use zfail::{Caster, Counting, Frame, LightKind, MeshId, ShadowLight, Shadows, Target, Technique, View};
+use zfail::{Bounds, Caster, Counting, Frame, FramePlan, LightKind, Measures, MeshId, ShadowLight, Shadows, Target};
+use zfail::{Technique, View};
 
 /// A mesh as tests write it.
 pub type Soup = (Vec<[f32; 3]>, Vec<[u32; 3]>);
@@ -15,7 +16,7 @@ pub struct Setup {
     pub depth_stencil: wgpu::TextureFormat,
     /// Whether the device may clamp depth by itself.
     pub clip_control: bool,
-    pub technique: Technique,
+    pub measures: Measures,
     pub counting: Counting,
     /// What depth is cleared to: 0 is nothing in sight, 1 is a surface right at the near plane.
     pub depth_clear: f32,
@@ -29,7 +30,7 @@ impl Default for Setup {
             samples: 1,
             depth_stencil: wgpu::TextureFormat::Depth32FloatStencil8,
             clip_control: true,
-            technique: Technique::EverittKilgard,
+            measures: Technique::EverittKilgard.measures(),
             counting: Counting::Raw,
             depth_clear: 0.0,
             draw_depth: true,
@@ -69,20 +70,39 @@ struct Out { @invariant @builtin(position) clip: vec4<f32> }
 /// The stencil of sample 0 of every pixel after the volumes of the one light, row by row.
 pub fn stencil(setup: &Setup, view: &View, meshes: &[(Soup, DAffine3)], light: LightKind) -> Option<Vec<u8>> {
     let (device, queue) = device(setup)?;
-    let mut shadows = Shadows::new(&device);
+    Some(draw(&device, &queue, setup, view, meshes, light, |_| {}).0)
+}
+
+/// The same on a device that is there, with a plan that `edit` may change; also returns the plan.
+pub fn draw(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    setup: &Setup,
+    view: &View,
+    meshes: &[(Soup, DAffine3)],
+    light: LightKind,
+    edit: impl FnOnce(&mut FramePlan),
+) -> (Vec<u8>, FramePlan) {
+    let mut shadows = Shadows::new(device);
     let target = Target { colors: &[], depth_stencil: setup.depth_stencil, samples: setup.samples };
-    let pipelines = shadows.pipelines(&device, &target);
+    let pipelines = shadows.pipelines(device, &target);
     let casters: Vec<Caster> = meshes
         .iter()
         .map(|((positions, triangles), world_from_object)| {
-            let mesh: MeshId = shadows.add_mesh(&device, &queue, positions, triangles, |_| true).expect("mesh");
+            let mesh: MeshId = shadows.add_mesh(device, queue, positions, triangles, |_| true).expect("mesh");
             Caster { mesh, world_from_object: *world_from_object }
         })
         .collect();
     let lights = [ShadowLight { kind: light, excluded: &[] }];
-    let (technique, counting) = (setup.technique, setup.counting);
-    let frame = Frame { view, casters: &casters, lights: &lights, technique, counting };
-    shadows.prepare(&device, &queue, &frame).expect("plan");
+    let placed = |(soup, place): &(Soup, DAffine3)| {
+        let corners = soup.0.iter().map(|p| place.transform_point3(glam::Vec3::from_array(*p).as_dvec3()));
+        Bounds::of(corners)
+    };
+    let receivers: Vec<Bounds> = meshes.iter().map(placed).collect();
+    let (measures, counting) = (setup.measures, setup.counting);
+    let frame = Frame { view, casters: &casters, lights: &lights, receivers: &receivers, measures, counting };
+    shadows.prepare(device, queue, &frame).expect("plan");
+    shadows.edit_plan(edit);
 
     let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: None,
@@ -111,14 +131,14 @@ pub fn stencil(setup: &Setup, view: &View, meshes: &[(Soup, DAffine3)], light: L
             ..wgpu::RenderPassDescriptor::default()
         });
         if setup.draw_depth {
-            draw_depth(&device, &mut pass, setup, view, meshes);
+            draw_depth(device, &mut pass, setup, view, meshes);
         }
         shadows.draw(&mut pass, &pipelines, 0);
     }
-    Some(read_stencil(&device, &queue, encoder, &texture))
+    (read_stencil(device, queue, encoder, &texture), shadows.plan().clone())
 }
 
-fn draw_depth(
+pub fn draw_depth(
     device: &wgpu::Device,
     pass: &mut wgpu::RenderPass<'_>,
     setup: &Setup,
@@ -177,7 +197,7 @@ fn draw_depth(
 }
 
 /// Reads the stencil aspect; a multisampled one goes through a shader that fetches sample 0.
-fn read_stencil(
+pub fn read_stencil(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
     mut encoder: wgpu::CommandEncoder,

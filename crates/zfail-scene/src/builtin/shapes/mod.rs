@@ -17,7 +17,7 @@ mod turned;
 pub use assembly::{merged, moved, painted, tinted};
 pub use facets::Facets;
 pub use sheets::{Slab, sheet};
-pub use solids::{cuboid, ico_sphere};
+pub use solids::{cuboid, divided_cuboid, ico_sphere};
 pub use swept::{extruded, stairs, torus_knot, tube};
 pub use turned::{capsule, cone, curve, cylinder, lathe, ring, torus, uv_sphere};
 

@@ -18,6 +18,31 @@ pub fn cuboid(min: DVec3, max: DVec3) -> Mesh {
     facets.mesh("box", CREASE)
 }
 
+/// [`cuboid`] with every face divided into `cells` by `cells` squares (at least one).
+#[must_use]
+pub fn divided_cuboid(min: DVec3, max: DVec3, cells: usize) -> Mesh {
+    let cells = cells.max(1);
+    // One formula for every face, so that faces meet bit for bit.
+    let at = |axis: usize, i: usize| min[axis] + (max[axis] - min[axis]) * (i as f64 / cells as f64);
+    let mut facets = Facets::default();
+    for axis in 0..3 {
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        for (i, j) in (0..cells).flat_map(|i| (0..cells).map(move |j| (i, j))) {
+            let corner = |side: usize, i: usize, j: usize| {
+                let mut p = DVec3::ZERO;
+                (p[axis], p[u], p[v]) = (at(axis, side * cells), at(u, i), at(v, j));
+                p
+            };
+            let square =
+                |side: usize| [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| corner(side, i, j));
+            let [a, b, c, d] = square(0);
+            facets.quad(square(1));
+            facets.quad([a, d, c, b]);
+        }
+    }
+    facets.mesh("box", CREASE)
+}
+
 /// An icosahedron, each triangle cut into four `subdivisions` times, on the sphere of `radius` around the origin;
 /// smooth if `smooth`, faceted otherwise.
 #[must_use]

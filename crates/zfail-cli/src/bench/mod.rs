@@ -1,0 +1,58 @@
+//! `zfail bench`: what frames cost, by scene and technique, with shadows and without.
+//!
+//! In: scenes. Out: a table, or JSON. Data flow: `scenes` (what is played) -> `measure` (samples of every variant,
+//! interleaved) -> `record` (their spread) -> `table`. `scaling` is a measurement of its own, of planning alone.
+
+mod measure;
+mod record;
+mod scaling;
+mod scenes;
+mod table;
+
+use crate::args;
+use crate::console;
+use crate::error::Error;
+use crate::input;
+use measure::{Setup, Variant};
+use record::Record;
+use scenes::Course;
+use serde::Serialize;
+
+/// Measures, then prints.
+///
+/// # Errors
+/// If a scene or the device fails, or standard output cannot be written.
+pub fn run(args: &args::Bench) -> Result<(), Error> {
+    if args.scaling {
+        let lines = scaling::measure(&scaling::SIZES, args.verbosity.quiet)?;
+        return if args.json { print_json(&lines) } else { console::print(&scaling::table(&lines)) };
+    }
+    let names: Vec<&str> = match &args.scenes[..] {
+        [] => scenes::DEFAULT.to_vec(),
+        names => names.iter().map(String::as_str).collect(),
+    };
+    // All of them before the first measurement, so that a wrong name costs no minutes.
+    let courses: Vec<Course> = names.into_iter().map(|name| Course::new(name, args)).collect::<Result<_, Error>>()?;
+    courses.iter().for_each(|course| console::notices(&course.animated.scene.notices, args.verbosity.quiet));
+
+    let gpu = input::gpu(&args.device)?;
+    let variants = Variant::all(&args.techniques);
+    let setup = Setup { gpu: &gpu, variants: &variants, samples: args.samples };
+    let steps = courses.iter().map(|course| setup.frame_count(course)).sum();
+    let progress = console::progress(steps, args.verbosity.quiet);
+    let mut records: Vec<Record> = Vec::new();
+    for course in &courses {
+        progress.set_message(course.name.clone());
+        for (variant, frames) in variants.iter().zip(setup.play(course, &progress)?) {
+            records.push(Record::new(course, variant, args.samples, &frames));
+        }
+    }
+    progress.finish_and_clear();
+    if args.json { print_json(&records) } else { console::print(&table::text(&gpu, &records)) }
+}
+
+fn print_json(records: &[impl Serialize]) -> Result<(), Error> {
+    let json = serde_json::to_string_pretty(records)
+        .map_err(|e| Error::failed(format!("cannot encode the measurements: {e}")))?;
+    console::print(&format!("{json}\n"))
+}

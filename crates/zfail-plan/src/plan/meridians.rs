@@ -1,0 +1,148 @@
+//! A quick bound on how many layers a ray from the light can cross, from silhouettes alone.
+//!
+//! In: the silhouettes of a light's casters. Out: a number that the count along no ray exceeds. Along a line of
+//! directions from one pole to the other the count begins and ends with the count at the poles and changes only where the
+//! line crosses silhouette edges; what goes up has to come down, so the count is at most half of poles and crossings
+//! together. The lines are binned into columns, and every edge counts in all columns it touches. This costs as much as the
+//! silhouette is long; the exact subdivision of [`crate::stack`] costs as much as the mesh is large.
+
+use super::near_count;
+use crate::casting::ObjectLight;
+use crate::scene::Bounds;
+use crate::topology::Topology;
+use glam::{DAffine3, DVec3, DVec4};
+use std::f64::consts::{PI, TAU};
+
+/// Columns of directions.
+const COLUMNS: usize = 256;
+
+/// How lines of directions are numbered, the same for all casters of a light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Lines {
+    /// Great semicircles between world +y and -y about a point light, by azimuth.
+    Meridians,
+    /// Parallel rays: by where they cross an axis, in steps. Columns repeat, which can only raise the bound.
+    Parallels {
+        /// Steps per unit along a direction across the light, world space.
+        axis: DVec3,
+    },
+}
+
+impl Lines {
+    /// The lines for a homogeneous light over casters within `bounds`.
+    pub fn new(light: DVec4, bounds: &Bounds) -> Self {
+        if light.w != 0.0 {
+            return Self::Meridians;
+        }
+        let across = light.truncate().normalize_or(DVec3::Y).any_orthonormal_vector();
+        // A power of two, so that it seldom changes.
+        let extent = 2.0 * bounds.half().length();
+        let step = if extent > 0.0 && extent.is_finite() { (extent / 100.0).log2().ceil().exp2() } else { 1.0 };
+        Self::Parallels { axis: across / step }
+    }
+}
+
+/// What one caster adds to every column.
+#[derive(Clone, Debug)]
+pub(super) struct Crossings {
+    columns: [u32; COLUMNS],
+    /// Layers at both poles together.
+    poles: u32,
+}
+
+impl Crossings {
+    /// No caster.
+    pub const NONE: Self = Self { columns: [0; COLUMNS], poles: 0 };
+
+    /// The crossings of one caster's silhouette for `light` in its object space. `silhouette` yields each edge as often
+    /// as it has sides.
+    pub fn of(
+        topology: &Topology,
+        weights: &[i8],
+        silhouette: impl Iterator<Item = [u32; 2]>,
+        world_from_object: &DAffine3,
+        light: ObjectLight,
+        lines: Lines,
+    ) -> Self {
+        let mut out = Self::NONE;
+        let origin = light.truncate().as_dvec3();
+        let matrix = world_from_object.matrix3;
+        for edge in silhouette {
+            let ends = edge.map(|v| topology.position(v));
+            match lines {
+                Lines::Meridians => {
+                    let [a, b] = ends.map(|p| {
+                        let d = matrix * (p - origin);
+                        d.z.atan2(d.x)
+                    });
+                    let turn = (b - a).rem_euclid(TAU);
+                    // The arc of the edge is less than half a circle; through a pole it may be either half.
+                    let (from, by) = if turn <= PI { (a, turn) } else { (b, TAU - turn) };
+                    let scale = COLUMNS as f64 / TAU;
+                    if by > 0.999 * PI || !by.is_finite() {
+                        out.add(0.0, COLUMNS as f64);
+                    } else {
+                        out.add(from * scale, (from + by) * scale);
+                    }
+                }
+                Lines::Parallels { axis } => {
+                    let [a, b] = ends.map(|p| axis.dot(world_from_object.transform_point3(p)));
+                    out.add(a.min(b), a.max(b));
+                }
+            }
+        }
+        if lines == Lines::Meridians {
+            let object_from_world = matrix.inverse();
+            for up in [DVec3::Y, DVec3::NEG_Y] {
+                let way = object_from_world * up;
+                if crosses(&topology.bounds(), origin, way) {
+                    out.poles += near_count::layers(topology, weights, light, way.extend(0.0));
+                }
+            }
+        }
+        out
+    }
+
+    fn add(&mut self, from: f64, to: f64) {
+        let (first, last) = (from.floor(), to.floor());
+        if last - first < COLUMNS as f64 - 1.0 {
+            let first = first as i64;
+            for i in first..=last as i64 {
+                self.columns[i.rem_euclid(COLUMNS as i64) as usize] += 1;
+            }
+        } else {
+            self.columns.iter_mut().for_each(|column| *column += 1);
+        }
+    }
+
+    /// Adds those of another caster.
+    pub fn merge(&mut self, other: &Self) {
+        self.poles += other.poles;
+        self.columns.iter_mut().zip(&other.columns).for_each(|(sum, n)| *sum += n);
+    }
+
+    /// The most layers that any ray can cross.
+    pub fn bound(&self) -> usize {
+        let most = self.columns.iter().copied().max().unwrap_or(0);
+        (most as usize + self.poles as usize) / 2
+    }
+}
+
+/// Whether a ray may meet a box.
+fn crosses(bounds: &Bounds, from: DVec3, way: DVec3) -> bool {
+    let margin = 1e-9 * (bounds.half() + bounds.center().abs() + from.abs());
+    let (mut near, mut far) = (0.0_f64, f64::INFINITY);
+    for i in 0..3 {
+        let (lo, hi) = (bounds.min[i] - margin[i] - from[i], bounds.max[i] + margin[i] - from[i]);
+        if way[i] == 0.0 {
+            if lo > 0.0 || hi < 0.0 {
+                return false;
+            }
+        } else {
+            let (a, b) = (lo / way[i], hi / way[i]);
+            near = near.max(a.min(b));
+            far = far.min(a.max(b));
+        }
+    }
+    near <= far
+}

@@ -1,0 +1,80 @@
+//! The near count: z-pass for casters that cover the near rectangle whole.
+//!
+//! In: a caster's weights, its silhouette and the occlusion pyramid. Out: in how many of its layers the near rectangle
+//! stands, if that is one number for all of it. Counting in front of the visible surface from that number on gives the
+//! count of z-fail without any cap. It is one number where no silhouette edge enters the pyramid, for only there the
+//! number of layers between the light and a point of the rectangle changes, and no casting triangle enters the near slab.
+
+use super::pyramid::Pyramid;
+use crate::casting::ObjectLight;
+use crate::topology::Topology;
+use glam::{DVec3, DVec4};
+use rayon::prelude::*;
+
+/// Items that one task looks at; fewer are not worth a task.
+const TASK: usize = 8192;
+
+/// The layers of the volume of `weights` over the whole near rectangle, or `None` where they may differ.
+/// `sides` are the volume's, `stride` indices each.
+pub(super) fn near_count(
+    topology: &Topology,
+    weights: &[i8],
+    sides: &[u32],
+    stride: usize,
+    pyramid: &Pyramid,
+) -> Option<u32> {
+    let clear =
+        |side: &[u32]| pyramid.excludes_segment(topology.position(side[0] >> 1), topology.position(side[1] >> 1));
+    let all_clear = if sides.len() <= TASK * stride {
+        sides.chunks_exact(stride).all(clear)
+    } else {
+        sides.par_chunks_exact(stride).with_min_len(TASK).all(clear)
+    };
+    if !all_clear {
+        return None;
+    }
+    let casting = |t: usize, c: i8| c != 0 && pyramid.slab_meets(topology.corners(t));
+    if any(weights, casting) {
+        return None;
+    }
+    let middle = pyramid.slab.iter().sum::<DVec3>() / 8.0;
+    Some(layers(topology, weights, pyramid.light, middle.extend(1.0)))
+}
+
+fn any(weights: &[i8], test: impl Fn(usize, i8) -> bool + Sync) -> bool {
+    let chunk = |(i, chunk): (usize, &[i8])| chunk.iter().enumerate().any(|(k, &c)| test(i * TASK + k, c));
+    if weights.len() <= TASK { chunk((0, weights)) } else { weights.par_chunks(TASK).enumerate().any(chunk) }
+}
+
+/// How many layers of the weights lie on the segment from the light to homogeneous point `to` (object space).
+///
+/// Edges are compared with the line in one canonical direction, so that neighbouring triangles never both claim or both
+/// deny a line that passes between them.
+pub(super) fn layers(topology: &Topology, weights: &[i8], light: ObjectLight, to: DVec4) -> u32 {
+    let light = light.as_dvec4();
+    // One of them is not at infinity; the line runs through it.
+    let through = if light.w != 0.0 { light.truncate() } else { to.truncate() };
+    let along = to.truncate() * light.w - light.truncate() * to.w;
+    let side = |a: u32, b: u32| {
+        let (lo, hi) = (a.min(b), a.max(b));
+        let s = along.dot((topology.position(lo) - through).cross(topology.position(hi) - through));
+        (s >= 0.0) == (a < b)
+    };
+    let crossed = |t: usize, c: i8| {
+        if c == 0 {
+            return 0;
+        }
+        let [a, b, c2] = topology.triangles[t];
+        let first = side(a, b);
+        if side(b, c2) != first || side(c2, a) != first {
+            return 0;
+        }
+        let [p, q, r] = topology.corners(t);
+        let normal = (q - p).cross(r - p);
+        let height = |h: DVec4| normal.dot(h.truncate() - p * h.w);
+        if (height(light) > 0.0) == (height(to) > 0.0) { 0 } else { u32::from(c.unsigned_abs()) }
+    };
+    let chunk =
+        |(i, chunk): (usize, &[i8])| chunk.iter().enumerate().map(|(k, &c)| crossed(i * TASK + k, c)).sum::<u32>();
+    if weights.len() <= TASK { chunk((0, weights)) } else { weights.par_chunks(TASK).enumerate().map(chunk).sum() }
+}

@@ -1,0 +1,380 @@
+//! The stages of planning, in order.
+//!
+//! In: a frame. Out: the plan. Scratch memory is kept, so that a frame allocates nothing once its like has been planned.
+
+use super::batches::Batching;
+use super::occluders::Shadow;
+use super::off_screen::{self, Parts};
+use super::pair::{Pair, Role};
+use super::placed::Placed;
+use super::pyramid::{self, Pyramid};
+use super::reach::Reach;
+use super::receivers::Receivers;
+use super::store::Store;
+use super::{Counting, Culled, Draw, Frame, FramePlan, LightPlan, LightStats, Measures, PlanError, ZPass, caps};
+use crate::scissor::{self, Rectangle};
+use glam::{DVec4, Vec4};
+use rayon::prelude::*;
+
+/// Plans frame after frame, keeping memory and what has not changed.
+#[derive(Debug, Default)]
+pub struct Planner {
+    /// By light and caster.
+    pairs: Vec<Pair>,
+    batching: Vec<Batching>,
+    store: Store,
+    plan: FramePlan,
+    placed: Vec<Placed>,
+    reach: Reach,
+    receivers: Receivers,
+    occluders: Vec<(f64, usize)>,
+    shadows: Vec<Shadow>,
+}
+
+impl Planner {
+    /// A planner without any memory of frames.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The last frame planned.
+    #[must_use]
+    pub fn last(&self) -> &FramePlan {
+        &self.plan
+    }
+
+    /// The last frame planned, to be changed before it is drawn. The next frame is planned as if it had not been.
+    pub fn last_mut(&mut self) -> &mut FramePlan {
+        &mut self.plan
+    }
+
+    /// Plans `frame`.
+    ///
+    /// # Errors
+    /// A caster's transform that cannot be inverted, or more indices than 32 bits can count.
+    pub fn plan(&mut self, frame: &Frame<'_>) -> Result<&FramePlan, PlanError> {
+        let outcome = self.fill(frame);
+        if outcome.is_err() {
+            // Nothing half-planned may be drawn.
+            *self = Self::default();
+        }
+        outcome.map(|()| &self.plan)
+    }
+
+    fn fill(&mut self, frame: &Frame<'_>) -> Result<(), PlanError> {
+        let measures = match frame.counting {
+            Counting::Verdict => frame.measures,
+            Counting::Raw => frame.measures.keeping_counts(),
+        };
+        let (casters, lights) = (frame.casters.len(), frame.lights.len());
+        if self.pairs.len() != casters * lights || self.plan.lights.len() != lights {
+            self.pairs.clear();
+            self.store = Store::default();
+            self.plan.indices.clear();
+        }
+        self.pairs.resize_with(casters * lights, Pair::default);
+        self.batching.resize_with(lights, Batching::default);
+        self.plan.lights.resize_with(lights, LightPlan::default);
+        self.plan.draws.clear();
+        self.store.begin(&mut self.plan.indices, &mut self.plan.changed);
+        let mut placed = std::mem::take(&mut self.placed);
+        placed.clear();
+        placed.extend(frame.casters.iter().map(|caster| Placed::new(caster, frame.view)));
+        let outcome = self.fill_placed(frame, measures, &placed);
+        self.placed = placed;
+        outcome
+    }
+
+    fn fill_placed(&mut self, frame: &Frame<'_>, measures: Measures, placed: &[Placed]) -> Result<(), PlanError> {
+        let (casters, lights) = (placed.len(), frame.lights.len());
+        if casters == 0 {
+            for light in &mut self.plan.lights {
+                light.begin(Some(scissor::full(frame.view)));
+            }
+            return Ok(());
+        }
+
+        for l in 0..lights {
+            self.choose(frame, measures, l, placed)?;
+        }
+        self.in_parallel(
+            frame,
+            |pair, _| pair.is_stale(frame.view),
+            |pair, c| {
+                pair.weigh(frame.casters[c].topology, frame.view);
+                pair.build_sides(frame.casters[c].topology);
+            },
+        );
+        for (l, pairs) in self.pairs.chunks_mut(casters).enumerate() {
+            self.batching[l].divide(frame, l, pairs, placed);
+        }
+        self.in_parallel(frame, |pair, _| !pair.is_built(), |pair, c| pair.build_sides(frame.casters[c].topology));
+        for (l, pairs) in self.pairs.chunks_mut(casters).enumerate() {
+            count_from_near_rectangle(frame, measures, &mut self.plan.lights[l], pairs, placed);
+        }
+        self.in_parallel(
+            frame,
+            |pair, c| pair.lacks_caps(frame.casters[c].topology),
+            |pair, c| {
+                pair.build_caps(frame.casters[c].topology, frame.view, &placed[c], measures.fan);
+            },
+        );
+        for l in 0..lights {
+            self.append(frame, l, placed)?;
+        }
+        Ok(())
+    }
+
+    /// Runs `work` on every pair that wants it; on several threads only if there is anything to do.
+    fn in_parallel(
+        &mut self,
+        frame: &Frame<'_>,
+        wanted: impl Fn(&Pair, usize) -> bool + Sync,
+        work: impl Fn(&mut Pair, usize) + Sync,
+    ) {
+        let casters = frame.casters.len();
+        let waiting = self.pairs.iter().enumerate().filter(|(i, pair)| wanted(pair, i % casters)).count();
+        let each = |(i, pair): (usize, &mut Pair)| {
+            if wanted(pair, i % casters) {
+                work(pair, i % casters);
+            }
+        };
+        if waiting > 1 {
+            self.pairs.par_iter_mut().enumerate().for_each(each);
+        } else if waiting == 1 {
+            self.pairs.iter_mut().enumerate().for_each(each);
+        }
+    }
+
+    /// Decides which casters of light `l` draw what and where, as far as boxes tell.
+    fn choose(&mut self, frame: &Frame<'_>, measures: Measures, l: usize, placed: &[Placed]) -> Result<(), PlanError> {
+        let (view, light) = (frame.view, &frame.lights[l]);
+        if measures.reach {
+            self.reach.set(&light.kind, view.eye());
+        } else {
+            self.reach.clear();
+        }
+        let plan = &mut self.plan.lights[l];
+        plan.begin(self.reach.scissor(view));
+        let receivers = measures.receivers && !frame.receivers.is_empty();
+        if receivers {
+            self.receivers.set(frame.receivers, view, &self.reach);
+        }
+        let homogeneous = light.kind.homogeneous();
+        let relative = DVec4::from((homogeneous.truncate() - view.eye() * homogeneous.w, homogeneous.w));
+        let pairs = &mut self.pairs[l * placed.len()..(l + 1) * placed.len()];
+        for (c, (pair, caster)) in pairs.iter_mut().zip(placed).enumerate() {
+            plan.stats.casters += 1;
+            pair.role = Role::Idle;
+            let role = (|| {
+                if light.excluded.contains(&c) {
+                    return Err(Culled::Excluded);
+                }
+                if caster.bounds.is_empty() {
+                    return Err(Culled::Empty);
+                }
+                let mut within = plan.scissor.ok_or(Culled::LightOffScreen)?;
+                if measures.reach && self.reach.excludes(&caster.world, caster.center, caster.axes) {
+                    return Err(Culled::OutOfReach);
+                }
+                if receivers {
+                    let shadowed = self.receivers.shadowed(view, &caster.corners, relative);
+                    let pixels = shadowed.and_then(|pixels| scissor::intersection(within, pixels));
+                    within = pixels.ok_or(Culled::NoReceiver)?;
+                }
+                Ok(within)
+            })();
+            let within = match role {
+                Ok(within) => within,
+                Err(reason) => {
+                    plan.stats.cull(reason);
+                    continue;
+                }
+            };
+            pair.aim(caster, &light.kind).ok_or(PlanError::Singular { caster: c })?;
+            let parts = if measures.off_screen {
+                off_screen::visible_parts(view, within, &caster.world_from_object, &caster.bounds, pair.light)
+            } else {
+                Parts::ALL
+            };
+            // A volume of which nothing is in view still darkens the whole image where the near rectangle is inside, but
+            // then its dark cap or its sides come into view.
+            if parts == Parts::default() {
+                plan.stats.cull(Culled::OffScreen);
+                continue;
+            }
+            let z_pass = measures.z_pass != ZPass::Never && is_clear(frame, caster, pair, within);
+            pair.role = Role::Active { within, parts, z_pass };
+        }
+        let z_fail = |pair: &Pair| matches!(pair.role, Role::Active { z_pass: false, .. });
+        if measures.z_pass == ZPass::ByLight && pairs.iter().any(z_fail) {
+            for pair in pairs.iter_mut() {
+                if let Role::Active { z_pass, .. } = &mut pair.role {
+                    *z_pass = false;
+                }
+            }
+        }
+        self.leave_out_occluded(frame, measures, l, placed, relative);
+        Ok(())
+    }
+
+    /// Idles casters in the shadow of convex ones.
+    fn leave_out_occluded(&mut self, frame: &Frame<'_>, measures: Measures, l: usize, placed: &[Placed], light: DVec4) {
+        let pairs = &mut self.pairs[l * placed.len()..(l + 1) * placed.len()];
+        let most = usize::from(measures.occluders);
+        if most == 0 || pairs.iter().filter(|pair| pair.role != Role::Idle).count() < 2 {
+            return;
+        }
+        let distance = |caster: &Placed| {
+            let way = |p: glam::DVec3| {
+                if light.w == 0.0 { -light.truncate().dot(p) } else { light.truncate().distance(p) }
+            };
+            caster.corners.iter().map(|c| way(*c)).fold(f64::INFINITY, f64::min)
+        };
+        // Those that look largest from the light.
+        self.occluders.clear();
+        for (c, (_, caster)) in pairs.iter().zip(placed).enumerate().filter(|(_, (pair, _))| pair.role != Role::Idle) {
+            if frame.casters[c].topology.convex.is_some() {
+                let size = caster.axes.iter().map(|axis| axis.length_squared()).sum::<f64>();
+                let away = if light.w == 0.0 { 1.0 } else { light.truncate().distance_squared(caster.center) };
+                self.occluders.push((-size / away.max(f64::MIN_POSITIVE), c));
+            }
+        }
+        self.occluders.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        self.occluders.truncate(most);
+        for entry in &mut self.occluders {
+            entry.0 = distance(&placed[entry.1]);
+        }
+        self.occluders.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+
+        let stats = &mut self.plan.lights[l].stats;
+        let mut kept = 0;
+        for &(_, c) in &self.occluders {
+            let caster = &placed[c];
+            if self.shadows[..kept].iter().any(|shadow| shadow.holds(&caster.corners)) {
+                pairs[c].role = Role::Idle;
+                stats.cull(Culled::Occluded);
+                continue;
+            }
+            if kept == self.shadows.len() {
+                self.shadows.push(Shadow::default());
+            }
+            let topology = frame.casters[c].topology;
+            if let Some(part) = &topology.convex {
+                self.shadows[kept].set(topology, part, &caster.relative_from_object, light);
+                kept += 1;
+            }
+        }
+        for (c, (pair, caster)) in pairs.iter_mut().zip(placed).enumerate() {
+            let itself = self.occluders.iter().any(|entry| entry.1 == c);
+            let occluded = |shadow: &Shadow| shadow.holds(&caster.corners);
+            if pair.role != Role::Idle && !itself && self.shadows[..kept].iter().any(occluded) {
+                pair.role = Role::Idle;
+                stats.cull(Culled::Occluded);
+            }
+        }
+    }
+
+    /// Appends the draws of one light, batch by batch, z-pass before z-fail.
+    fn append(&mut self, frame: &Frame<'_>, l: usize, placed: &[Placed]) -> Result<(), PlanError> {
+        let Self { pairs, plan, store, .. } = self;
+        let pairs = &mut pairs[l * placed.len()..(l + 1) * placed.len()];
+        let FramePlan { indices, draws, lights, changed } = plan;
+        let light = &mut lights[l];
+        for pair in pairs.iter() {
+            if let Role::Active { parts, z_pass, .. } = pair.role
+                && pair.batches() > 0
+            {
+                let case = if z_pass { 0 } else { 1 + usize::from(parts.light_cap) };
+                light.stats.cases[case] += 1;
+            }
+        }
+        let batches = pairs.iter().map(Pair::batches).max().unwrap_or(0);
+        for batch in 0..batches {
+            let first = draws.len() as u32;
+            for pass in [true, false] {
+                for (c, pair) in pairs.iter_mut().enumerate() {
+                    let Role::Active { within, z_pass, .. } = pair.role else { continue };
+                    if z_pass != pass {
+                        continue;
+                    }
+                    for p in 0..pair.pieces().len() {
+                        let drawn = pair.drawn(&pair.pieces()[p]);
+                        let object_light = pair.light;
+                        let piece = pair.piece_mut(p);
+                        if usize::from(piece.batch) != batch || drawn.triangles() == [0; 3] {
+                            continue;
+                        }
+                        let base = store
+                            .put(&mut piece.place, &piece.indices, piece.fresh, indices, changed)
+                            .ok_or(PlanError::TooManyIndices)?;
+                        piece.fresh = false;
+                        light.stats.add(drawn.triangles());
+                        let plane = |u| caps::plane(u, object_light, frame.view, &placed[c].object_from_relative());
+                        draws.push(Draw {
+                            caster: c as u32,
+                            light: object_light,
+                            cap: piece.cap.map_or(Vec4::ZERO, plane),
+                            z_pass,
+                            scissor: within,
+                            volume: drawn.shifted(base),
+                            mirrored: placed[c].mirrored,
+                        });
+                    }
+                }
+            }
+            light.batches.push(first..draws.len() as u32);
+        }
+        Ok(())
+    }
+}
+
+/// Whether nothing of a caster stands between the light and the near rectangle behind pixels `within`.
+fn is_clear(frame: &Frame<'_>, caster: &Placed, pair: &Pair, within: Rectangle) -> bool {
+    pyramid_of(frame, caster, pair, within).excludes(&caster.bounds)
+}
+
+fn pyramid_of(frame: &Frame<'_>, caster: &Placed, pair: &Pair, within: Rectangle) -> Pyramid {
+    let slab = pyramid::near_slab(frame.view, within, pyramid::pad(frame.view, caster.reach));
+    Pyramid::new(slab, &caster.object_from_relative(), pair.light)
+}
+
+/// Turns z-fail into z-pass where the count at the near rectangle is known, and adds those counts up.
+fn count_from_near_rectangle(
+    frame: &Frame<'_>,
+    measures: Measures,
+    light: &mut LightPlan,
+    pairs: &mut [Pair],
+    placed: &[Placed],
+) {
+    let Some(scissor) = light.scissor.filter(|_| measures.near_count) else { return };
+    let mut sum = 0;
+    for (c, (pair, caster)) in pairs.iter_mut().zip(placed).enumerate() {
+        let Role::Active { within, parts, z_pass: false } = pair.role else { continue };
+        let pyramid = pyramid_of(frame, caster, pair, scissor);
+        let Some(count) = pair.near_count(frame.casters[c].topology, pyramid) else { continue };
+        sum += count;
+        // What every pixel starts with has to be counted in every pixel.
+        let (within, parts) = if count == 0 { (within, parts) } else { (scissor, Parts::ALL) };
+        pair.role = Role::Active { within, parts, z_pass: true };
+    }
+    light.stats.near_count = sum;
+}
+
+impl LightPlan {
+    fn begin(&mut self, scissor: Option<Rectangle>) {
+        self.batches.clear();
+        self.scissor = scissor;
+        self.stats = LightStats { scissor: scissor.unwrap_or_default(), ..LightStats::default() };
+    }
+}
+
+impl LightStats {
+    fn add(&mut self, [sides, dark_cap, light_cap]: [u32; 3]) {
+        self.triangles.sides += sides;
+        self.triangles.dark_cap += dark_cap;
+        self.triangles.light_cap += light_cap;
+        self.vertices += 3 * (sides + dark_cap + light_cap);
+    }
+}

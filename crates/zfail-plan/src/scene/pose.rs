@@ -1,0 +1,89 @@
+//! One moment of a scene: what may differ from frame to frame while everything else stays.
+//!
+//! In: placements by index. Out: the same placements in a [`Scene`].
+
+use super::{LightKind, Scene};
+use glam::DAffine3;
+
+/// Where everything is that an animation can move; each list has the indices of the [`Scene`] that it belongs to.
+///
+/// A list may be shorter than the scene's: what it does not reach stays where it is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Pose {
+    /// Per instance, object to world; invertible.
+    pub instances: Vec<DAffine3>,
+    /// Per light, its placement and reach.
+    pub lights: Vec<LightKind>,
+    /// Per camera, view to world: rotation and translation only.
+    pub cameras: Vec<DAffine3>,
+}
+
+impl Pose {
+    /// The pose in which `scene` is.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        let mut pose = Self::default();
+        pose.take(scene);
+        pose
+    }
+
+    /// Becomes the pose in which `scene` is, in the memory that it has.
+    pub fn take(&mut self, scene: &Scene) {
+        self.instances.clear();
+        self.instances.extend(scene.instances.iter().map(|instance| instance.world_from_object));
+        self.lights.clear();
+        self.lights.extend(scene.lights.iter().map(|light| light.kind));
+        self.cameras.clear();
+        self.cameras.extend(scene.cameras.iter().map(|camera| camera.world_from_view));
+    }
+}
+
+impl Scene {
+    /// Moves everything to where `pose` has it. Entries beyond the scene's own are ignored.
+    pub fn set_pose(&mut self, pose: &Pose) {
+        for (instance, world_from_object) in self.instances.iter_mut().zip(&pose.instances) {
+            instance.world_from_object = *world_from_object;
+        }
+        for (light, kind) in self.lights.iter_mut().zip(&pose.lights) {
+            light.kind = *kind;
+        }
+        for (camera, world_from_view) in self.cameras.iter_mut().zip(&pose.cameras) {
+            camera.world_from_view = *world_from_view;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Instance;
+    use glam::DVec3;
+
+    fn instance(x: f64) -> Instance {
+        let world_from_object = DAffine3::from_translation(DVec3::X * x);
+        Instance { name: String::new(), mesh: 0, world_from_object, casts_shadow: true }
+    }
+
+    #[test]
+    fn a_pose_taken_and_set_changes_nothing_else() {
+        let mut scene = Scene { instances: vec![instance(1.0), instance(2.0)], ..Scene::default() };
+        let rest = Pose::of(&scene);
+        let mut moved = rest.clone();
+        moved.instances[1] = DAffine3::from_translation(DVec3::Y);
+        scene.set_pose(&moved);
+        assert_eq!(Pose::of(&scene), moved);
+        assert_ne!(Pose::of(&scene), rest);
+        scene.set_pose(&rest);
+        assert_eq!(Pose::of(&scene), rest);
+    }
+
+    #[test]
+    fn lists_of_other_lengths_are_no_fault() {
+        let mut scene = Scene { instances: vec![instance(1.0), instance(2.0)], ..Scene::default() };
+        scene.set_pose(&Pose { instances: vec![DAffine3::IDENTITY], ..Pose::default() });
+        assert_eq!(scene.instances[0].world_from_object, DAffine3::IDENTITY);
+        assert_eq!(scene.instances[1].world_from_object.translation, DVec3::X * 2.0);
+        scene.set_pose(&Pose { instances: vec![DAffine3::IDENTITY; 9], ..Pose::default() });
+        assert_eq!(scene.instances.len(), 2);
+    }
+}

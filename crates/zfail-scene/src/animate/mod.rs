@@ -1,0 +1,76 @@
+//! Scenes that move: keyframes of nodes, and the pose of everything at a moment.
+//!
+//! In: a scene at rest, the part of its node hierarchy that moves, and key frames. Out: a [`Pose`] for any time.
+//! Data flow: `track` (a value over time) -> `rig` (local transforms, world transforms, whatever hangs on the nodes).
+//!
+//! A pose is a function of animation and time alone: frames may be asked for in any order.
+
+mod rig;
+mod track;
+
+pub(crate) use rig::{MAX_COORDINATE, Move, Node, Parent, Rig, Trs, placed};
+pub(crate) use track::{Interpolation, Track};
+
+use zfail_plan::scene::{Pose, Scene};
+
+/// A scene with the animations that move its instances, lights and cameras.
+#[derive(Clone, Debug, Default)]
+pub struct Animated {
+    /// The scene at rest. Instances, lights and cameras may be added behind those that are there, as
+    /// [`crate::complete`] does; what is there keeps its index.
+    pub scene: Scene,
+    /// In the order of the file.
+    pub animations: Vec<Animation>,
+    pub(crate) rig: Rig,
+}
+
+/// An animation by name.
+#[derive(Clone, Debug, Default)]
+pub struct Animation {
+    /// As in the file, or an invented one.
+    pub name: String,
+    /// Time of the last key, seconds. Beyond it, and before the first key, everything stands still.
+    pub duration: f64,
+    pub(crate) moves: Vec<Move>,
+}
+
+impl Animation {
+    /// Whether it moves anything of the scene. An animation of skins or morph targets alone does not.
+    #[must_use]
+    pub fn moves_anything(&self) -> bool {
+        !self.moves.is_empty()
+    }
+
+    /// The time within the animation at which it is `seconds` after its start if it is played again and again.
+    #[must_use]
+    pub fn wrapped(&self, seconds: f64) -> f64 {
+        // Key times are single precision; the last key itself must not become the first.
+        if seconds as f32 <= self.duration as f32 { seconds } else { seconds % self.duration.max(f64::MIN_POSITIVE) }
+    }
+}
+
+impl From<Scene> for Animated {
+    /// Without animations.
+    fn from(scene: Scene) -> Self {
+        Self { scene, ..Self::default() }
+    }
+}
+
+impl Animated {
+    /// Where everything is in animation number `animation` after `seconds`; at rest if there is no such animation.
+    ///
+    /// All arithmetic is in `f64`. Each key is hit exactly at its time, which files store in single precision.
+    #[must_use]
+    pub fn pose(&self, animation: usize, seconds: f64) -> Pose {
+        let mut pose = Pose::default();
+        self.pose_into(animation, seconds, &mut pose);
+        pose
+    }
+
+    /// [`Self::pose`] in the memory of `pose`.
+    pub fn pose_into(&self, animation: usize, seconds: f64, pose: &mut Pose) {
+        pose.take(&self.scene);
+        let moves = self.animations.get(animation).map_or(&[][..], |animation| &animation.moves);
+        self.rig.pose(moves, seconds, pose);
+    }
+}

@@ -1,0 +1,346 @@
+//! Animations of nodes: what moves, how, and which faults are named.
+
+use crate::build::{Gltf, assert_sound};
+use serde_json::{Value, json};
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
+use zfail_plan::glam::{DAffine3, DVec3};
+use zfail_plan::scene::{LightKind, Pose, world_triangle};
+use zfail_scene::Animated;
+
+/// Key times of most tests, seconds.
+const TIMES: [[f32; 1]; 2] = [[1.0], [3.0]];
+
+/// A triangle on node 0, which the animation "move" moves.
+fn moving(path: &str, interpolation: &str, output: impl FnOnce(&mut Gltf) -> usize) -> Gltf {
+    let mut gltf = Gltf::triangle();
+    let (input, output) = (gltf.floats(&TIMES), output(&mut gltf));
+    gltf.json["animations"] = json!([{"name": "move",
+        "samplers": [{"input": input, "output": output, "interpolation": interpolation}],
+        "channels": [{"sampler": 0, "target": {"node": 0, "path": path}}]}]);
+    gltf
+}
+
+/// A linear translation along x, from 10 to 20.
+fn sliding() -> Gltf {
+    moving("translation", "LINEAR", |g| g.floats(&[[10.0, 0.0, 0.0], [20.0, 0.0, 0.0]]))
+}
+
+/// The first instance's transform after `seconds`.
+fn instance(animated: &Animated, seconds: f64) -> DAffine3 {
+    animated.pose(0, seconds).instances[0]
+}
+
+#[track_caller]
+fn assert_near(a: DVec3, b: impl Into<DVec3>) {
+    let b = b.into();
+    assert!(a.distance(b) < 1e-6, "{a} is not {b}");
+}
+
+#[test]
+fn translations_by_every_interpolation() {
+    let x = |animated: &Animated, seconds: f64| instance(animated, seconds).translation.x;
+    let linear = sliding().animated();
+    assert_eq!((linear.animations[0].name.as_str(), linear.animations[0].duration), ("move", 3.0));
+    assert!(linear.animations[0].moves_anything());
+    for (seconds, expected) in [(-1.0, 10.0), (1.0, 10.0), (1.5, 12.5), (3.0, 20.0), (99.0, 20.0)] {
+        assert_eq!(x(&linear, seconds), expected, "{seconds}");
+    }
+    let mut gltf = sliding();
+    gltf.json["animations"][0]["samplers"][0].as_object_mut().unwrap().remove("interpolation");
+    assert_eq!(x(&gltf.animated(), 1.5), 12.5, "linear is the default");
+    gltf.json["animations"][0]["samplers"][0]["interpolation"] = json!("STEP");
+    assert_eq!((x(&gltf.animated(), 2.9), x(&gltf.animated(), 3.0)), (10.0, 20.0));
+
+    // x = t^2 between t = 1 and 3.
+    let keys = [2.0, 1.0, 2.0, 6.0, 9.0, 6.0].map(|x| [x, 0.0, 0.0]);
+    let spline = moving("translation", "CUBICSPLINE", |g| g.floats(&keys)).animated();
+    for seconds in [1.0, 1.25, 2.0, 2.5, 3.0] {
+        assert!((x(&spline, seconds) - seconds * seconds).abs() < 1e-12, "{seconds}");
+    }
+    assert_eq!((x(&spline, 0.0), x(&spline, 4.0)), (1.0, 9.0));
+}
+
+#[test]
+fn the_file_at_rest_is_not_moved() {
+    let mut gltf = sliding();
+    gltf.json["nodes"][0]["translation"] = json!([7, 8, 9]);
+    let animated = gltf.animated();
+    assert_eq!(animated.scene.instances[0].world_from_object.translation, DVec3::new(7.0, 8.0, 9.0));
+    assert_eq!(gltf.scene().instances[0].world_from_object.translation, DVec3::new(7.0, 8.0, 9.0));
+    assert_eq!(animated.pose(1, 2.0), Pose::of(&animated.scene), "there is no second animation");
+    assert_ne!(animated.pose(0, 2.0), Pose::of(&animated.scene));
+}
+
+#[test]
+fn rotations_from_floats_and_normalised_integers() {
+    let half = [0.0, 1.0, 0.0, 0.0];
+    let quarter_turned = |animated: &Animated| instance(animated, 2.0).transform_vector3(DVec3::X);
+    let floats = moving("rotation", "LINEAR", |g| g.floats(&[[0.0, 0.0, 0.0, 1.0], half]));
+    assert_near(quarter_turned(&floats.animated()), [0.0, 0.0, -1.0]);
+
+    let normalised = |output: &dyn Fn(&mut Gltf) -> usize| {
+        moving("rotation", "LINEAR", |g| {
+            let accessor = output(g);
+            g.json["accessors"][accessor]["normalized"] = json!(true);
+            accessor
+        })
+    };
+    let bytes = normalised(&|g| g.bytes(&[[0, 0, 0, 255], [0, 255, 0, 0]]));
+    let shorts = normalised(&|g| g.shorts(&[[0, 0, 0, 65535], [0, 65535, 0, 0]]));
+    let signed = normalised(&|g| g.accessor(&[0, 0, 0, 127, 0, 129, 0, 0], 5120, "VEC4", 2));
+    for (gltf, z) in [(bytes, -1.0), (shorts, -1.0), (signed, 1.0)] {
+        assert_near(quarter_turned(&gltf.animated()), [0.0, 0.0, z]);
+    }
+    let plain = moving("rotation", "LINEAR", |g| g.bytes(&[[0, 0, 0, 255], [0, 255, 0, 0]]));
+    plain.fails_with("animations[0].samplers[0].output: accessors[2] must hold floats or normalized integers");
+}
+
+#[test]
+fn spline_rotations_are_normalised() {
+    let zero = [0.0; 4];
+    let keys = [zero, [0.0, 0.0, 0.0, 1.0], zero, zero, [0.0, 1.0, 0.0, 0.0], zero];
+    let animated = moving("rotation", "CUBICSPLINE", |g| g.floats(&keys)).animated();
+    assert_near(instance(&animated, 2.0).transform_vector3(DVec3::X), [0.0, 0.0, -1.0]);
+}
+
+#[test]
+fn scales_and_what_they_shrink_to_nothing() {
+    let animated = moving("scale", "LINEAR", |g| g.floats(&[[2.0, 2.0, 0.0], [-2.0, 2.0, 0.0]])).animated();
+    let mut scene = animated.scene.clone();
+    for seconds in [0.0, 1.0, 2.0, 2.0 + 1e-12, 3.0] {
+        scene.set_pose(&animated.pose(0, seconds));
+        assert_sound(&scene);
+        let matrix = scene.instances[0].world_from_object.matrix3;
+        assert!(matrix.inverse().is_finite(), "{seconds}");
+        assert!((matrix.x_axis.x - (2.0 - 2.0 * (seconds - 1.0).clamp(0.0, 2.0))).abs() < 1e-5, "{seconds}");
+        assert!(matrix.z_axis.length() < 1e-5);
+    }
+    let vanishing = moving("scale", "STEP", |g| g.floats(&[[0.0; 3], [1.0; 3]])).animated();
+    assert!(instance(&vanishing, 0.0).transform_vector3(DVec3::ONE).length() < 1e-8);
+    assert!(instance(&vanishing, 0.0).inverse().is_finite());
+    assert_eq!(instance(&vanishing, 3.0), DAffine3::IDENTITY);
+}
+
+#[test]
+fn what_is_flat_at_rest_keeps_its_shape_for_later() {
+    for scale in [json!([0, 0, 0]), json!([1, 0, 1])] {
+        let mut gltf = moving("scale", "STEP", |g| g.floats(&[[0.0; 3], [1.0; 3]]));
+        gltf.json["nodes"][0]["scale"] = scale;
+        let animated = gltf.animated();
+        assert_sound(&animated.scene);
+        let mesh = &animated.scene.meshes[animated.scene.instances[0].mesh];
+        let corners = world_triangle(mesh, &instance(&animated, 3.0), 0);
+        assert_eq!(corners, [DVec3::ZERO, DVec3::X, DVec3::Y]);
+        assert!(animated.scene.notices.is_empty(), "{:?}", animated.scene.notices);
+    }
+}
+
+#[test]
+fn hierarchies_compose_in_double_precision() {
+    let mut gltf = sliding();
+    gltf.json["nodes"] = json!([
+        {"translation": [0, 0, 0], "children": [1]},
+        {"rotation": [0, 0, FRAC_1_SQRT_2, FRAC_1_SQRT_2], "children": [2]},
+        {"translation": [0.1, 0, 0], "mesh": 0, "name": "leaf"},
+        {"mesh": 0, "name": "still"},
+        {"translation": [1000000.1, 0, 0], "children": [0]}
+    ]);
+    let turn = gltf.floats(&[[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]]);
+    let animation = &mut gltf.json["animations"][0];
+    let input = animation["samplers"][0]["input"].clone();
+    animation["samplers"].as_array_mut().unwrap().push(json!({"input": input, "output": turn}));
+    animation["channels"]
+        .as_array_mut()
+        .unwrap()
+        .push(json!({"sampler": 1, "target": {"node": 1, "path": "rotation"}}));
+    let animated = gltf.animated();
+    let names: Vec<_> = animated.scene.instances.iter().map(|i| i.name.as_str()).collect();
+    assert_eq!(names, ["still", "leaf"]);
+    let rest = Pose::of(&animated.scene);
+    for seconds in [1.0, 1.5, 2.0, 3.0] {
+        let pose = animated.pose(0, seconds);
+        let angle = PI * (seconds - 1.0) / 2.0;
+        let slide = 10.0 + 5.0 * (seconds - 1.0);
+        let expected = DVec3::new(1_000_000.1 + slide + 0.1 * angle.cos(), 0.1 * angle.sin(), 0.0);
+        assert!(pose.instances[1].translation.distance(expected) < 1e-9, "{seconds}");
+        assert_eq!(pose.instances[0], rest.instances[0]);
+    }
+}
+
+#[test]
+fn lights_and_cameras_move_with_their_nodes() {
+    let mut gltf = sliding();
+    let light = |i: usize| json!({"KHR_lights_punctual": {"light": i}});
+    gltf.json["extensions"] = json!({"KHR_lights_punctual": {"lights": [
+        {"type": "point", "range": 5}, {"type": "spot", "spot": {"outerConeAngle": 0.5}}, {"type": "directional"}]}});
+    gltf.json["cameras"] = json!([{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}]);
+    gltf.json["nodes"] = json!([
+        {"children": [1, 2, 3, 4]}, {"extensions": light(0)},
+        {"extensions": light(1), "rotation": [0, FRAC_1_SQRT_2, 0, FRAC_1_SQRT_2]}, {"extensions": light(2)},
+        {"camera": 0, "translation": [0, 1, 0], "scale": [2, 2, 2]}, {"extensions": light(0)}
+    ]);
+    let animated = gltf.animated();
+    let pose = animated.pose(0, 2.0);
+    let position = DVec3::X * 15.0;
+    assert_eq!(pose.lights[0], LightKind::Point { position, range: 5.0 });
+    let LightKind::Spot { position: at, direction, outer, .. } = pose.lights[1] else { panic!() };
+    assert_eq!((at, outer), (position, 0.5));
+    assert_near(direction, DVec3::NEG_X);
+    assert_eq!(pose.lights[2], LightKind::Directional { direction: DVec3::NEG_Z });
+    assert_eq!(pose.lights[3], animated.scene.lights[3].kind, "the same light on a node that stands still");
+    assert_eq!(pose.cameras[0], DAffine3::from_translation(DVec3::new(15.0, 1.0, 0.0)), "rigid");
+}
+
+#[test]
+fn a_pose_depends_on_nothing_but_animation_and_time() {
+    let mut gltf = sliding();
+    let mut second = gltf.json["animations"][0].clone();
+    second["name"] = Value::Null;
+    second["channels"] = json!([]);
+    gltf.json["animations"].as_array_mut().unwrap().push(second);
+    let mut animated = gltf.animated();
+    assert_eq!((animated.animations[1].name.as_str(), animated.animations[1].duration), ("animation 1", 0.0));
+    assert!(!animated.animations[1].moves_anything());
+    let expected = [animated.pose(0, 2.0), animated.pose(1, 2.0)];
+    assert_ne!(expected[0], expected[1]);
+    let mut pose = animated.pose(0, 3.0);
+    animated.scene.set_pose(&pose);
+    for (i, expected) in expected.iter().enumerate() {
+        animated.pose_into(i, 2.0, &mut pose);
+        assert_eq!(pose, *expected, "animation {i}");
+    }
+}
+
+#[test]
+fn a_completed_scene_has_poses_of_its_size() {
+    let mut animated = sliding().animated();
+    zfail_scene::complete(&mut animated.scene);
+    let pose = animated.pose(0, 2.0);
+    assert_eq!((pose.instances.len(), pose.lights.len(), pose.cameras.len()), (1, 1, 1));
+    assert_eq!(pose.cameras[0], animated.scene.cameras[0].world_from_view);
+}
+
+#[test]
+fn time_wraps_over_the_duration() {
+    let animation = &sliding().animated().animations[0];
+    for (seconds, wrapped) in [(0.0, 0.0), (2.5, 2.5), (3.0, 3.0), (4.0, 1.0), (9.5, 0.5)] {
+        assert_eq!(animation.wrapped(seconds), wrapped);
+    }
+    assert!(zfail_scene::Animation::default().wrapped(7.0) < 1e-9);
+}
+
+#[test]
+fn what_cannot_be_animated_is_left_out_with_a_notice() {
+    let notices = |change: &dyn Fn(&mut Gltf)| {
+        let mut gltf = sliding();
+        change(&mut gltf);
+        let animated = gltf.animated();
+        assert!(!animated.animations[0].moves_anything());
+        assert_eq!(animated.animations[0].duration, 3.0);
+        animated.scene.notices
+    };
+    let target = |g: &mut Gltf, target: Value| g.json["animations"][0]["channels"][0]["target"] = target;
+    assert_eq!(
+        notices(&|g| target(g, json!({"node": 0, "path": "weights"}))),
+        ["morph targets are not animated: they keep their default weights"]
+    );
+    assert_eq!(
+        notices(&|g| target(g, json!({"path": "pointer"}))),
+        ["animations[0].channels[0].target.path is \"pointer\": left out"]
+    );
+    assert!(notices(&|g| target(g, json!({"path": "translation"}))).is_empty(), "for an extension to say");
+    let matrix = json!([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 7, 8, 9, 1]);
+    assert_eq!(
+        notices(&|g| g.json["nodes"][0]["matrix"] = matrix.clone()),
+        ["animations[0].channels[0] would move nodes[0], which has a matrix: left out"]
+    );
+    // A node outside of the default scene is nobody's fault.
+    let elsewhere = notices(&|g| {
+        g.push("nodes", json!({"mesh": 0}));
+        g.json["scenes"] = json!([{"nodes": [1]}]);
+    });
+    assert!(elsewhere.is_empty(), "{elsewhere:?}");
+}
+
+#[test]
+fn skins_rest_while_their_joints_move() {
+    let mut gltf = sliding();
+    gltf.json["skins"] = json!([{"joints": [0]}]);
+    assert_eq!(gltf.animated().scene.notices, ["skinned meshes stay in their rest pose"]);
+}
+
+#[test]
+fn rotations_without_length_are_replaced() {
+    let keys = [[0.0; 4], [0.0, 1.0, 0.0, 0.0]];
+    let animated = moving("rotation", "LINEAR", |g| g.floats(&keys)).animated();
+    assert_eq!(animated.scene.notices.len(), 1);
+    assert!(animated.scene.notices[0].starts_with("animations[0].samplers[0].output has rotations without length"));
+    for seconds in [1.0, 2.0, 3.0] {
+        assert_near(instance(&animated, seconds).transform_vector3(DVec3::X), DVec3::NEG_X);
+    }
+    assert_eq!(instance(&animated, 0.0), DAffine3::IDENTITY, "before it, the node's own");
+}
+
+#[test]
+fn faults_are_named() {
+    assert!(sliding().load().is_ok(), "without a fault it loads");
+    let fails = |pointer: &str, value: Value, expected: &str| {
+        let mut gltf = sliding();
+        *gltf.json.pointer_mut(&format!("/animations/0/{pointer}")).unwrap() = value;
+        gltf.fails_with(expected);
+    };
+    fails("samplers/0/input", json!(9), "animations[0].samplers[0].input: refers to accessors[9]");
+    fails("samplers/0/output", json!(9), "animations[0].samplers[0].output: refers to accessors[9]");
+    fails("channels/0/sampler", json!(1), "animations[0].channels[0].sampler: refers to samplers[1]");
+    fails("channels/0/target/node", json!(1), "animations[0].channels[0].target.node: refers to nodes[1]");
+    fails("channels/0/target", json!({}), "missing field `path`");
+    fails("samplers/0/interpolation", json!("BEZIER"), "animations[0].samplers[0].interpolation");
+    fails("samplers/0/interpolation", json!("CUBICSPLINE"), "has 2 elements, but 2 keys need 6");
+    fails("channels/0/target/path", json!("rotation"), "accessors[2].type: is Vec3, but 4 components are needed");
+    fails("samplers/0/input", json!(0), "accessors[0].type: is Vec3, but 1 components are needed");
+
+    let with_times = |times: &[[f32; 1]], expected: &str| {
+        let mut gltf = sliding();
+        gltf.json["animations"][0]["samplers"][0]["input"] = json!(gltf.floats(times));
+        gltf.fails_with(expected);
+    };
+    with_times(&[[0.0], [1.0], [2.0]], "accessors[2] has 2 elements, but 3 keys need 3");
+    with_times(&[], "animations[0].samplers[0].input: accessors[3] has no keys");
+    with_times(&[[0.0], [f32::NAN]], "the time of key 1 (accessors[3]) is not finite");
+    with_times(&[[1.0], [0.5]], "the time of key 1 (accessors[3]) is before that of key 0");
+    let mut gltf = sliding();
+    gltf.json["animations"][0]["samplers"][0]["input"] = json!(gltf.shorts(&[[0], [1]]));
+    gltf.fails_with("animations[0].samplers[0].input: accessors[3] must hold single-precision floats");
+
+    moving("scale", "LINEAR", |g| g.floats(&[[1.0; 3], [1.0, f32::INFINITY, 1.0]]))
+        .fails_with("animations[0].samplers[0].output: element 1 (accessors[2]) is not finite");
+    let mut gltf = sliding();
+    let again = gltf.json["animations"][0]["channels"][0].clone();
+    gltf.json["animations"][0]["channels"].as_array_mut().unwrap().push(again);
+    gltf.fails_with("animations[0].channels[1].target: moves the translation of nodes[0] a second time");
+}
+
+#[test]
+fn two_keys_at_one_time_are_a_jump() {
+    let mut gltf = sliding();
+    gltf.json["animations"][0]["samplers"][0] = json!({
+        "input": gltf.floats(&[[0.0], [1.0], [1.0], [2.0]]),
+        "output": gltf.floats(&[[0.0; 3], [1.0, 0.0, 0.0], [5.0, 0.0, 0.0], [6.0, 0.0, 0.0]])
+    });
+    let animated = gltf.animated();
+    let x = |seconds| instance(&animated, seconds).translation.x;
+    assert_eq!((x(0.5), x(1.0), x(1.5)), (0.5, 5.0, 5.5));
+}
+
+#[test]
+fn beyond_all_measure_means_at_rest() {
+    let mut gltf = moving("scale", "LINEAR", |g| g.floats(&[[1.0; 3], [1e38; 3]]));
+    gltf.json["nodes"] = json!([{"children": [1]}, {"mesh": 0, "translation": [1, 2, 3]}]);
+    let animated = gltf.animated();
+    let mut scene = animated.scene.clone();
+    for seconds in [2.0, 3.0] {
+        scene.set_pose(&animated.pose(0, seconds));
+        assert_sound(&scene);
+        assert_eq!(scene.instances[0].world_from_object.translation, DVec3::new(1.0, 2.0, 3.0));
+    }
+}

@@ -1,0 +1,344 @@
+//! The tile pass: shadow counts from a compute shader, where rasterising long thin sides would cost more.
+//!
+//! In: the sides of the casters that z-pass may count, the count at the near plane, and the finished depth. Out: the
+//! verdict in the stencil, as if the sides had been drawn there (decision record 0010).
+//!
+//! It follows hierarchical shadow volumes (Aila & Akenine-Moller 2004) in that whole tiles are decided before pixels: the
+//! CPU lists each side quad in the tiles where it may lie before something visible, and only there do pixels look at it.
+
+mod bins;
+mod buffers;
+mod quad;
+
+pub use quad::Sides;
+
+use crate::error::Error;
+use crate::pipelines::Target;
+use bins::{Bins, TILE};
+use buffers::{Buffers, GroupRecord};
+use bytemuck::Zeroable;
+use glam::DVec2;
+use quad::{Quad, Sight};
+use wgpu::{
+    BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry,
+    BindingResource, BindingType, BufferBindingType, ColorTargetState, ColorWrites, CommandEncoder, CompareFunction,
+    ComputePassDescriptor, ComputePipeline, ComputePipelineDescriptor, DepthBiasState, DepthStencilState, Device,
+    FragmentState, MultisampleState, PipelineCompilationOptions, PipelineLayoutDescriptor, PrimitiveState, Queue,
+    RenderPass, RenderPipeline, RenderPipelineDescriptor, ShaderModule, ShaderStages, StencilFaceState,
+    StencilOperation, StencilState, StorageTextureAccess, TextureFormat, TextureSampleType, TextureView,
+    TextureViewDimension, VertexState,
+};
+use zfail_plan::scene::Bounds;
+use zfail_plan::scissor::Rectangle;
+use zfail_plan::view::{Projection, View};
+
+/// What the stencil holds where the tile pass finds shadow.
+const SHADOWED: u32 = 0x80;
+
+/// Sides of a frame's lights as the tile pass counts them. Memory is kept between frames.
+#[derive(Debug)]
+pub struct TilePass {
+    count: ComputePipeline,
+    count_layout: BindGroupLayout,
+    verdict_module: ShaderModule,
+    verdict_layout: BindGroupLayout,
+    /// The eye and all that it sees; `None` if the view has no eye.
+    sight: Option<Sight>,
+    size: [u32; 2],
+    bins: Bins,
+    found: Vec<bins::Group>,
+    quads: Vec<Quad>,
+    entries: Vec<u32>,
+    groups: Vec<GroupRecord>,
+    places: Vec<u32>,
+    lights: Vec<Light>,
+    buffers: Buffers,
+}
+
+/// One light of the frame.
+#[derive(Debug)]
+struct Light {
+    base: i32,
+    /// Pixels that can be in shadow.
+    scissor: Rectangle,
+}
+
+/// The pipeline of [`TilePass::draw`] for one [`Target`].
+#[derive(Debug)]
+pub struct VerdictPipeline(RenderPipeline);
+
+/// Figures of one light in the tile pass, for reports and cost models.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TileStats {
+    /// Side quads in sight.
+    pub quads: usize,
+    /// Pairs of a quad and a tile in which it is tested.
+    pub pairs: usize,
+    /// Tiles with at least one quad.
+    pub tiles: usize,
+}
+
+impl TilePass {
+    /// A tile pass on `device`.
+    #[must_use]
+    pub fn new(device: &Device) -> Self {
+        let count_layout = count_layout(device);
+        let module = device.create_shader_module(wgpu::include_wgsl!("count.wgsl"));
+        let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
+            label: Some("tile counts"),
+            bind_group_layouts: &[Some(&count_layout)],
+            immediate_size: 0,
+        });
+        let count = device.create_compute_pipeline(&ComputePipelineDescriptor {
+            label: Some("tile counts"),
+            layout: Some(&layout),
+            module: &module,
+            entry_point: None,
+            compilation_options: PipelineCompilationOptions {
+                constants: &[("LANES", bins::LANES as f64)],
+                ..PipelineCompilationOptions::default()
+            },
+            cache: None,
+        });
+        let verdict_layout = device.create_bind_group_layout(&BindGroupLayoutDescriptor {
+            label: Some("tile verdict"),
+            entries: &[sampled(0, ShaderStages::FRAGMENT, TextureSampleType::Uint, TextureViewDimension::D2Array)],
+        });
+        Self {
+            count,
+            count_layout,
+            verdict_module: device.create_shader_module(wgpu::include_wgsl!("verdict.wgsl")),
+            verdict_layout,
+            sight: None,
+            size: [0; 2],
+            bins: Bins::default(),
+            found: Vec::new(),
+            quads: Vec::new(),
+            entries: Vec::new(),
+            groups: Vec::new(),
+            places: Vec::new(),
+            lights: Vec::new(),
+            buffers: Buffers::new(device),
+        }
+    }
+
+    /// The pipeline that brings verdicts into passes with the formats of `target`; `None` for multisampled targets, whose
+    /// samples the tile pass does not see.
+    #[must_use]
+    pub fn pipeline(&self, device: &Device, target: &Target<'_>) -> Option<VerdictPipeline> {
+        let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
+            label: Some("tile verdict"),
+            bind_group_layouts: &[Some(&self.verdict_layout)],
+            immediate_size: 0,
+        });
+        let face = StencilFaceState { pass_op: StencilOperation::Replace, ..StencilFaceState::IGNORE };
+        let untouched = |format| ColorTargetState { format, blend: None, write_mask: ColorWrites::empty() };
+        let colors: Vec<_> = target.colors.iter().map(|format| format.map(untouched)).collect();
+        let pipeline = || {
+            device.create_render_pipeline(&RenderPipelineDescriptor {
+                label: Some("tile verdict"),
+                layout: Some(&layout),
+                vertex: VertexState {
+                    module: &self.verdict_module,
+                    entry_point: None,
+                    compilation_options: PipelineCompilationOptions::default(),
+                    buffers: &[],
+                },
+                primitive: PrimitiveState::default(),
+                depth_stencil: Some(DepthStencilState {
+                    format: target.depth_stencil,
+                    depth_write_enabled: Some(false),
+                    depth_compare: Some(CompareFunction::Always),
+                    stencil: StencilState { front: face, back: face, read_mask: 0, write_mask: 0xff },
+                    bias: DepthBiasState::default(),
+                }),
+                multisample: MultisampleState::default(),
+                fragment: Some(FragmentState {
+                    module: &self.verdict_module,
+                    entry_point: None,
+                    compilation_options: PipelineCompilationOptions::default(),
+                    targets: &colors,
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        };
+        (target.samples == 1).then(|| VerdictPipeline(pipeline()))
+    }
+
+    /// Forgets the last frame's lights and begins with a new view. `visible` are world-space bounds of all surfaces in it
+    /// that a light of this pass can reach: shadows beyond them are not looked for.
+    pub fn begin(&mut self, view: &View, visible: &Bounds) {
+        self.size = view.size;
+        self.quads.clear();
+        // What fills up the shorter lists: depth is 0, never before anything.
+        self.quads.push(Quad::zeroed());
+        self.entries.clear();
+        self.groups.clear();
+        self.places.clear();
+        self.lights.clear();
+        self.sight = matches!(view.projection, Projection::Perspective { .. }).then(|| {
+            // A ray from the eye to a visible point stays within the bounds of both.
+            let mut bounds = *visible;
+            bounds.add(view.eye());
+            let margin = 1e-4 * bounds.half().length();
+            bounds.min -= margin;
+            bounds.max += margin;
+            Sight { bounds, size: DVec2::new(view.size[0].into(), view.size[1].into()) }
+        });
+    }
+
+    /// Adds a light with the `sides` of its volumes. `base` is the sum of the counts at the near plane of the casters
+    /// they belong to, the same on all of the near rectangle, which none of the sides may cross.
+    ///
+    /// Returns figures of the light, which [`Self::draw`] knows by the number of lights added before it, or `None` if it
+    /// has to be rasterised: the view is orthographic, or the lists outgrow the device's textures.
+    ///
+    /// # Panics
+    /// If `sides` refer to positions that there are not.
+    pub fn add<'a>(
+        &mut self,
+        device: &Device,
+        base: i32,
+        sides: impl IntoIterator<Item = Sides<'a>>,
+    ) -> Option<TileStats> {
+        let sight = self.sight?;
+        let before = (self.quads.len(), self.entries.len(), self.places.len());
+        self.bins.clear(self.size);
+        for volume in sides {
+            sight.quads(&volume, |quad, footprint| {
+                self.bins.add(self.quads.len() as u32, footprint, volume.scissor);
+                self.quads.push(quad);
+            });
+        }
+        let pairs = self.bins.pairs();
+        self.found.clear();
+        self.bins.append(&mut self.entries, &mut self.found, &mut self.places);
+        let light = self.lights.len() as u32;
+        if !buffers::fit(&device.limits(), self.quads.len(), self.entries.len(), self.lights.len() + 1) {
+            self.quads.truncate(before.0);
+            self.entries.truncate(before.1);
+            self.places.truncate(before.2);
+            return None;
+        }
+        self.groups.extend(self.found.iter().map(|&bins::Group { first, length }| GroupRecord {
+            first,
+            length,
+            light,
+            base,
+        }));
+        let places = &self.places[before.2..];
+        let scissor = if base == 0 { around(places, self.size) } else { [0, 0, self.size[0], self.size[1]] };
+        self.lights.push(Light { base, scissor });
+        let tiles = places.iter().filter(|&&place| place != bins::NO_TILE).count();
+        Some(TileStats { quads: self.quads.len() - before.0, pairs, tiles })
+    }
+
+    /// Uploads the lights added since [`Self::begin`].
+    ///
+    /// # Errors
+    /// Lists that are too large for the device's buffers.
+    pub fn upload(&mut self, device: &Device, queue: &Queue) -> Result<(), Error> {
+        let bases = self.lights.iter().map(|light| light.base);
+        self.buffers.upload(device, queue, self.size, &self.groups, &self.places, &self.entries, &self.quads, bases)
+    }
+
+    /// Encodes the counting of all lights. `depth` is the finished depth of the view, a view of the depth aspect alone of a
+    /// texture with one sample.
+    pub fn encode(&self, device: &Device, encoder: &mut CommandEncoder, depth: &TextureView) {
+        if self.groups.is_empty() {
+            return;
+        }
+        let bindings = device.create_bind_group(&BindGroupDescriptor {
+            label: Some("tile counts"),
+            layout: &self.count_layout,
+            entries: &self.buffers.entries(depth),
+        });
+        let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
+            label: Some("tile counts"),
+            ..ComputePassDescriptor::default()
+        });
+        pass.set_pipeline(&self.count);
+        pass.set_bind_group(0, &bindings, &[]);
+        let [x, y] = buffers::workgroups(self.groups.len());
+        pass.dispatch_workgroups(x, y, 1);
+    }
+
+    /// Encodes the verdict on the `light`th light added: the stencil of pixels in its shadow is set, that of others is left
+    /// as it is. Volumes that are rasterised for the same light come before.
+    ///
+    /// Sets pipeline, bind group 0, stencil reference and scissor.
+    pub fn draw(&self, device: &Device, pass: &mut RenderPass<'_>, pipeline: &VerdictPipeline, light: usize) {
+        let Some(Light { scissor: [x, y, width, height], .. }) = self.lights.get(light) else { return };
+        if *width == 0 || *height == 0 {
+            return;
+        }
+        let bindings = device.create_bind_group(&BindGroupDescriptor {
+            label: Some("tile verdict"),
+            layout: &self.verdict_layout,
+            entries: &[BindGroupEntry { binding: 0, resource: BindingResource::TextureView(self.buffers.shadowed()) }],
+        });
+        let light = light as u32;
+        pass.set_scissor_rect(*x, *y, *width, *height);
+        pass.set_pipeline(&pipeline.0);
+        pass.set_bind_group(0, &bindings, &[]);
+        pass.set_stencil_reference(SHADOWED);
+        pass.draw(0..3, light..light + 1);
+    }
+}
+
+/// The pixels of the tiles at `places`, within an image of `size` pixels.
+fn around(places: &[u32], size: [u32; 2]) -> Rectangle {
+    let tiles = places.iter().filter(|&&place| place != bins::NO_TILE).map(|place| [place & 0xffff, place >> 16]);
+    let (lo, hi) = tiles.fold(([u32::MAX; 2], [0; 2]), |(lo, hi), tile| {
+        (std::array::from_fn(|i| tile[i].min(lo[i])), std::array::from_fn(|i| (tile[i] + 1).max(hi[i])))
+    });
+    if lo[0] == u32::MAX {
+        return [0; 4];
+    }
+    let [x, y] = lo.map(|tile| tile * TILE);
+    [x, y, (hi[0] * TILE).min(size[0]) - x, (hi[1] * TILE).min(size[1]) - y]
+}
+
+fn sampled(
+    binding: u32,
+    visibility: ShaderStages,
+    sample_type: TextureSampleType,
+    view_dimension: TextureViewDimension,
+) -> BindGroupLayoutEntry {
+    let ty = BindingType::Texture { sample_type, view_dimension, multisampled: false };
+    BindGroupLayoutEntry { binding, visibility, ty, count: None }
+}
+
+fn count_layout(device: &Device) -> BindGroupLayout {
+    let buffer = |binding, ty| BindGroupLayoutEntry {
+        binding,
+        visibility: ShaderStages::COMPUTE,
+        ty: BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+        count: None,
+    };
+    let list = BufferBindingType::Storage { read_only: true };
+    let texture = |binding, sample_type| sampled(binding, ShaderStages::COMPUTE, sample_type, TextureViewDimension::D2);
+    device.create_bind_group_layout(&BindGroupLayoutDescriptor {
+        label: Some("tile counts"),
+        entries: &[
+            buffer(0, BufferBindingType::Uniform),
+            buffer(1, list),
+            buffer(2, list),
+            texture(3, TextureSampleType::Uint),
+            texture(4, TextureSampleType::Float { filterable: false }),
+            // Depth textures may be bound so, and every backend can fetch from them then.
+            texture(5, TextureSampleType::Float { filterable: false }),
+            BindGroupLayoutEntry {
+                binding: 6,
+                visibility: ShaderStages::COMPUTE,
+                ty: BindingType::StorageTexture {
+                    access: StorageTextureAccess::WriteOnly,
+                    format: TextureFormat::R32Uint,
+                    view_dimension: TextureViewDimension::D2Array,
+                },
+                count: None,
+            },
+        ],
+    })
+}
