@@ -99,7 +99,10 @@ impl Gpu {
         Ok(Self {
             depth_stencil: zfail::depth_stencil_format(device.features()),
             timestamps: device.features().contains(wgpu::Features::TIMESTAMP_QUERY),
-            timestamps_inside: device.features().contains(timing) && !timing.is_empty(),
+            // A software rasteriser works on many draws at once.
+            timestamps_inside: device.features().contains(timing)
+                && !timing.is_empty()
+                && info.device_type != wgpu::DeviceType::Cpu,
             device,
             queue,
             info,

@@ -3,6 +3,7 @@
 use crate::gpu_data::LightRecord;
 use zfail_plan::glam::DVec3;
 use zfail_plan::scene::{Bounds, Light, LightKind};
+use zfail_plan::scissor;
 use zfail_plan::view::View;
 
 /// `light` in the space of `view`, its intensity multiplied by `pre_exposure`.
@@ -44,13 +45,67 @@ fn per_range(range: f64) -> f32 {
     (1.0 / range).min(1e30) as f32
 }
 
-/// Whether `light` reaches anything within `bounds` (world space).
-pub fn reaches(light: &Light, bounds: &Bounds) -> bool {
+/// What bounds a light's influence on a picture, beside the range in the file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Precision {
+    /// The least difference of pre-exposed radiance that the target shows.
+    pub step: f64,
+    /// Scale from scene radiance to pre-exposed.
+    pub pre_exposure: f64,
+    /// The greatest share of the irradiance that a surface of the scene sends to the eye, per steradian.
+    pub reflectance: f64,
+}
+
+/// The least step of a half float near 0.
+pub const HALF_FLOAT_STEP: f64 = 1.0 / (1 << 24) as f64;
+
+/// The least difference of exposed radiance that may change an 8-bit picture by a whole step: neither the tone mapper
+/// (1) nor the display encoding (12.92, at black) is steeper.
+pub const DISPLAY_STEP: f64 = 1.0 / (255.0 * 12.92);
+
+/// The greatest value that `reflectance` of `light.wgsl` takes for a material of at least this `roughness`: diffuse
+/// light gives 1/pi; the microfacet distribution is at most 1 / (pi a^2), and its visibility times the cosine at most
+/// 1 / (2 a), where a is the square of the roughness, not less than 0.002.
+pub fn greatest_reflectance(roughness: f64) -> f64 {
+    let a = (roughness * roughness).max(0.002);
+    (1.0 + 0.5 / (a * a * a)) / std::f64::consts::PI
+}
+
+/// `light`'s kind as far as it matters to a picture: its range is not longer than the distance beyond which what any
+/// surface reflects of it is less than `precision` shows (McGuire et al. 2003, section 4.1, "effective radius"). What is
+/// computed per pixel keeps the range of the file, by which the light fades.
+pub fn effective(light: &Light, precision: &Precision) -> LightKind {
+    let peak = f64::from(light.color.into_iter().fold(0.0, f32::max)) * f64::from(light.intensity);
+    let share = precision.pre_exposure * precision.reflectance / precision.step;
+    // Not a number where nothing is known: then the file's range stands.
+    let radius = (peak * share).sqrt();
     match light.kind {
+        LightKind::Point { position, range } => LightKind::Point { position, range: range.min(radius) },
+        LightKind::Spot { position, direction, range, inner, outer } => {
+            LightKind::Spot { position, direction, range: range.min(radius), inner, outer }
+        }
+        directional @ LightKind::Directional { .. } => directional,
+    }
+}
+
+/// Whether a light of `kind` reaches anything within `bounds` (world space).
+pub fn reaches(kind: &LightKind, bounds: &Bounds) -> bool {
+    match *kind {
         LightKind::Point { position, range } | LightKind::Spot { position, range, .. } => {
             bounds.distance_squared(position) <= range * range
         }
         LightKind::Directional { .. } => true,
+    }
+}
+
+/// Whether a light of `kind` reaches anything that `view` shows.
+pub fn is_visible(kind: &LightKind, view: &View) -> bool {
+    match *kind {
+        LightKind::Point { position, range } | LightKind::Spot { position, range, .. } if range.is_finite() => {
+            let half = DVec3::splat(range);
+            scissor::rectangle(view, &Bounds { min: position - half, max: position + half }.corners()).is_some()
+        }
+        _ => true,
     }
 }
 
@@ -104,5 +159,43 @@ mod tests {
             assert_eq!(scale.to_bits() & 0x007f_ffff, 0, "{scale} is no power of two");
         }
         assert_eq!(pre_exposure([].iter(), &Bounds::EMPTY, &[[0.0; 3]]), 1.0);
+    }
+
+    #[test]
+    fn light_ends_where_it_is_below_a_step() {
+        let lamp = |intensity, range| {
+            let kind = LightKind::Point { position: DVec3::ZERO, range };
+            Light { name: String::new(), kind, color: [0.5, 1.0, 0.0], intensity, excluded: Vec::new() }
+        };
+        let reach = |light: &Light, precision: &Precision| match effective(light, precision) {
+            LightKind::Point { range, .. } => range,
+            _ => f64::NAN,
+        };
+        let precision = Precision { step: 1e-4, pre_exposure: 0.5, reflectance: 0.4 };
+        let radius = reach(&lamp(8.0, f64::INFINITY), &precision);
+        assert!((8.0 * 0.5 * 0.4 / (radius * radius) - 1e-4).abs() < 1e-12);
+        assert_eq!(reach(&lamp(8.0, 3.0), &precision), 3.0);
+        assert_eq!(reach(&lamp(0.0, f64::INFINITY), &precision), 0.0);
+        assert!(reach(&lamp(9.0, f64::INFINITY), &precision) > radius);
+        assert_eq!(effective(&sun(1e-9), &precision), sun(1e-9).kind);
+    }
+
+    #[test]
+    fn no_surface_reflects_more_than_the_bound() {
+        for roughness in [0.05_f64, 0.2, 0.5, 1.0] {
+            let a = roughness * roughness;
+            let a2 = a * a;
+            let bound = greatest_reflectance(roughness);
+            let mut greatest = 0.0_f64;
+            for i in 1..=200 {
+                for j in 1..=200 {
+                    let [n_l, n_v] = [i, j].map(|k| f64::from(k) / 200.0);
+                    let root = |c: f64| (c * c * (1.0 - a2) + a2).sqrt();
+                    let highlight = n_l * 0.5 / (n_l * root(n_v) + n_v * root(n_l)) / (std::f64::consts::PI * a2);
+                    greatest = greatest.max(highlight);
+                }
+            }
+            assert!(greatest < bound && bound < 2.0 / std::f64::consts::PI + 100.0 * greatest, "{greatest} {bound}");
+        }
     }
 }

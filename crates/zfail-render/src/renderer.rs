@@ -15,15 +15,16 @@ use crate::shadow_pass::ShadowPass;
 use crate::stats::{FrameStats, LightFigures};
 use crate::targets::{Attributes, Targets};
 use crate::timing::Timer;
-use crate::tone_map::tone_map;
 use crate::verdict_pass::{self, Verdict, VerdictPass};
-use crate::{AovKind, Aovs, Exposure, Gpu, Picture, RenderError, Settings, attribute_outputs, lights, read_back};
+use crate::{
+    AovKind, Aovs, Exposure, Gpu, Picture, RenderError, Settings, attribute_outputs, lights, read_back, tone_map,
+};
 use half::f16;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::time::Instant;
 use zfail::{Counting, LightStats};
-use zfail_plan::scene::{Pose, Scene};
+use zfail_plan::scene::{LightKind, Pose, Scene};
 use zfail_plan::view::View;
 
 /// A scene on the device, ready to be rendered from any view.
@@ -105,14 +106,16 @@ impl<'g> Renderer<'g> {
         Ok((Picture { size: targets.size, hdr, rgba8 }, stats))
     }
 
-    /// Renders one frame and waits for the device, but leaves the picture there. With an [`Exposure::Ev`] and without
-    /// blended materials this is cheaper than [`Renderer::picture`] by more than the read-back: no radiance is kept.
+    /// Renders one frame and waits for the device, but leaves the picture there. With an [`Exposure::Ev`], one
+    /// sample and no blended materials this is cheaper than [`Renderer::picture`] by more than the read-back: no radiance is kept.
     ///
     /// # Errors
     /// If the settings do not fit the scene or the device, or the device fails.
     pub fn render(&mut self, view: &View, settings: &Settings) -> Result<FrameStats, RenderError> {
+        // What is blended or averaged has to be radiance.
+        let direct = settings.samples == 1 && !self.scene.draws.blends;
         let known = matches!(settings.exposure, Exposure::Ev(_));
-        let finish = if known && !self.scene.draws.blends { Finish::Forward } else { Finish::Darkroom };
+        let finish = if known && direct { Finish::Forward } else { Finish::Darkroom };
         self.draw(view, settings, finish)
     }
 
@@ -133,17 +136,23 @@ impl<'g> Renderer<'g> {
             self.targets = Some(Targets::new(gpu, view.size, samples)?);
         }
 
+        let exposed = Exposed::new(&self.scene, &chosen, settings.exposure, view);
+        let precision = exposed.precision(&self.scene, finish);
+        let kinds: Vec<LightKind> =
+            chosen.iter().map(|&l| lights::effective(&self.scene.lights[l], &precision)).collect();
+        // Positions in `chosen` of the lights that make a difference.
+        let active: Vec<usize> = (0..chosen.len()).filter(|&i| lights::is_visible(&kinds[i], view)).collect();
+
         let start = Instant::now();
         let figures = if settings.shadows {
-            self.scene.plan(gpu, view, &chosen, settings, Counting::Verdict)?
+            self.scene.plan(gpu, view, &chosen, &kinds, settings, Counting::Verdict)?
         } else {
             vec![unplanned(view); chosen.len()]
         };
         let planning_ms = start.elapsed().as_secs_f64() * 1e3;
 
         self.scene.arrange(view);
-        let exposed = Exposed::new(&self.scene, &chosen, settings.exposure, view);
-        let parts = parts(chosen.len(), settings.shadows, self.scene.draws.blends);
+        let parts = parts(active.len(), settings.shadows, self.scene.draws.blends);
         let finish = if parts.len() > 1 { Finish::Darkroom } else { finish };
         let spans = Spans {
             shadows: settings.shadows,
@@ -153,7 +162,7 @@ impl<'g> Renderer<'g> {
         // Several steps would write the same queries.
         self.timer.begin(gpu, if parts.len() > 1 { 0 } else { spans.count() });
         for (number, part) in parts.iter().enumerate() {
-            self.step(view, &chosen, &figures, &exposed, part, number > 0, finish, spans, samples)?;
+            self.step(view, &active, &kinds, &figures, &exposed, part, number > 0, finish, spans, samples)?;
         }
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         if finish == Finish::Darkroom {
@@ -193,7 +202,8 @@ impl<'g> Renderer<'g> {
     fn step(
         &mut self,
         view: &View,
-        chosen: &[usize],
+        active: &[usize],
+        kinds: &[LightKind],
         figures: &[LightStats],
         exposed: &Exposed,
         part: &Part,
@@ -204,17 +214,16 @@ impl<'g> Renderer<'g> {
     ) -> Result<(), RenderError> {
         let gpu = self.gpu;
         let (scene, layouts, timer) = (&self.scene, &self.layouts, &self.timer);
-        let range = part.lights.clone();
-        let records = &exposed.lights[range.clone()];
-        let shading = Shading { lights: records, ..exposed.shading() };
-        let lights = &chosen[range.clone()];
+        let lights = &active[part.lights.clone()];
+        let records: Vec<LightRecord> = lights.iter().map(|&l| exposed.lights[l]).collect();
+        let shading = Shading { lights: &records, ..exposed.shading() };
         self.frame.update(
             gpu,
             layouts,
             view,
             &shading,
             scene.draws.order.iter().map(|&i| &scene.instances[i].world_from_object),
-            |l, slot| lights::reaches(&scene.lights[lights[l]], &scene.instance_bounds[scene.draws.order[slot]]),
+            |l, slot| lights::reaches(&kinds[lights[l]], &scene.instance_bounds[scene.draws.order[slot]]),
         )?;
         let targets = self.targets.as_mut().ok_or_else(no_targets)?;
         let shadowed = spans.shadows && part.solid;
@@ -225,7 +234,7 @@ impl<'g> Renderer<'g> {
             let shadows = &scene.shadows;
             let pass = self.verdicts.entry(samples).or_insert_with(|| VerdictPass::new(gpu, shadows, samples));
             pass.prepare(gpu, layouts, scene);
-            let verdicts = range.map(|light| Verdict {
+            let verdicts = lights.iter().map(|&light| Verdict {
                 light,
                 scissor: Some(figures[light].scissor).filter(|_| figures[light].has_shadow()),
                 span: spans.light(light),
@@ -240,9 +249,8 @@ impl<'g> Renderer<'g> {
         let verdicts = shadowed.then(|| targets.verdicts(gpu, layouts).bind_group.clone());
         let color = match finish {
             Finish::Forward => {
-                let (view, resolve_target) = targets.picture(gpu);
-                let [r, g, b] = tone_map(exposed.background.map(|c| c * exposed.exposure)).map(f64::from);
-                cleared(view, [r, g, b, 1.0]).map(|color| wgpu::RenderPassColorAttachment { resolve_target, ..color })
+                let [r, g, b] = exposed.background.map(|c| c * exposed.exposure);
+                cleared(&targets.ldr_view, tone_map::displayed([r, g, b]))
             }
             Finish::Darkroom if added => continued(&targets.hdr(gpu).samples),
             Finish::Darkroom => {
@@ -303,7 +311,8 @@ impl<'g> Renderer<'g> {
                 continue;
             }
             if settings.shadows {
-                self.scene.plan(gpu, view, &chosen, settings, counting)?;
+                let kinds: Vec<LightKind> = chosen.iter().map(|&l| self.scene.lights[l].kind).collect();
+                self.scene.plan(gpu, view, &chosen, &kinds, settings, counting)?;
             }
             for light in 0..chosen.len() {
                 let mut encoder = encoder();
@@ -370,6 +379,19 @@ impl Exposed {
         }
     }
 
+    /// What a picture finished so shows of the scene's lights; each has its share of the error.
+    fn precision(&self, scene: &SceneOnGpu, finish: Finish) -> lights::Precision {
+        let step = match finish {
+            Finish::Forward => lights::DISPLAY_STEP / f64::from(self.exposure),
+            Finish::Darkroom => lights::HALF_FLOAT_STEP,
+        };
+        lights::Precision {
+            step: step / self.lights.len().max(1) as f64,
+            pre_exposure: self.pre_exposure.into(),
+            reflectance: lights::greatest_reflectance(scene.roughness),
+        }
+    }
+
     fn shading(&self) -> Shading<'_> {
         let Self { lights, ambient, pre_exposure, exposure, .. } = self;
         Shading { lights, ambient: *ambient, pre_exposure: *pre_exposure, exposure: *exposure }
@@ -433,5 +455,83 @@ fn figures_of(kind: &'static str, figures: LightStats, shadow_ms: Option<f64>, l
         scissor: figures.scissor,
         shadow_ms,
         light_ms,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::GpuOptions;
+    use zfail_plan::glam::{DAffine3, DVec3};
+    use zfail_plan::scene::{Instance, Light, Material, Mesh, Primitive};
+    use zfail_plan::view::Projection;
+
+    /// A triangle under more than one light, before a background.
+    fn scene(unlit: bool) -> Scene {
+        let material = Material { unlit, base_color: [0.8, 0.3, 0.05, 1.0], metallic: 0.0, ..Material::default() };
+        let mesh = Mesh {
+            positions: vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]],
+            normals: vec![[0.0, 0.0, 1.0]; 3],
+            triangles: vec![[0, 1, 2]],
+            primitives: vec![Primitive { triangles: 0..1, material: Some(0) }],
+            ..Mesh::default()
+        };
+        let light = |x: f64| Light {
+            name: String::new(),
+            kind: LightKind::Point { position: DVec3::new(x, 0.5, 0.7), range: 9.0 },
+            color: [1.0, 0.9, 0.7],
+            intensity: 1.5,
+            excluded: Vec::new(),
+        };
+        let instance =
+            Instance { name: String::new(), mesh: 0, world_from_object: DAffine3::IDENTITY, casts_shadow: true };
+        Scene {
+            meshes: vec![mesh],
+            materials: vec![material],
+            instances: vec![instance],
+            lights: vec![light(-0.5), light(0.5)],
+            ambient: [0.05; 3],
+            background: [0.02, 0.3, 1.7],
+            ..Scene::default()
+        }
+    }
+
+    #[test]
+    fn a_frame_written_directly_is_the_developed_picture() {
+        let gpu = match Gpu::new(&GpuOptions::default()) {
+            Ok(gpu) => gpu,
+            Err(error) => return eprintln!("skipped: {error}"),
+        };
+        let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
+        let world_from_view = DAffine3::from_translation(DVec3::new(0.0, 0.0, 2.5));
+        let view = View { world_from_view, projection, size: [64, 64] };
+        for unlit in [false, true] {
+            let mut renderer = Renderer::new(&gpu, &scene(unlit)).expect("a renderer");
+            let mut direct = |settings: &Settings| {
+                renderer.draw(&view, settings, Finish::Forward).expect("a frame");
+                read_back::texture(&gpu, &renderer.targets.as_ref().expect("targets").ldr).expect("texels")
+            };
+            let settings = Settings { exposure: Exposure::Ev(0.5), ..Settings::default() };
+            let frames = [direct(&settings), direct(&Settings { shadows: false, ..settings.clone() })];
+            let brighter = direct(&Settings { exposure: Exposure::Ev(0.6), ..settings.clone() });
+            let developed = renderer.picture(&view, &settings).expect("a picture").0.rgba8;
+            let difference = |a: &[u8]| a.iter().zip(&developed).map(|(a, b)| a.abs_diff(*b)).max();
+            // Half floats keep 11 bits of radiance.
+            assert!(frames.iter().all(|frame| difference(frame) <= Some(1)), "{:?}", difference(&frames[0]));
+            assert!(difference(&brighter) > Some(1), "the comparison can fail");
+        }
+    }
+
+    #[test]
+    fn many_lights_are_divided() {
+        let whole = |lights: usize, blended| Part { lights: 0..lights, solid: true, blended };
+        assert_eq!(parts(50, false, true), [whole(50, true)]);
+        assert_eq!(parts(32, true, false), [whole(32, false)]);
+        let divided = parts(50, true, true);
+        assert_eq!(divided.iter().map(|p| p.lights.clone()).collect::<Vec<_>>(), [0..32, 32..50, 0..50]);
+        assert_eq!(
+            divided.iter().map(|p| [p.solid, p.blended]).collect::<Vec<_>>(),
+            [[true, false], [true, false], [false, true]]
+        );
     }
 }

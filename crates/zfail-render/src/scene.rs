@@ -5,7 +5,7 @@ use crate::geometry::MeshBuffers;
 use crate::layouts::Layouts;
 use crate::{Gpu, RenderError, Settings, check, materials};
 use zfail::{Caster, Counting, Frame, LightStats, ShadowLight, Shadows};
-use zfail_plan::scene::{Bounds, Instance, Light, Mesh, Pose, Scene};
+use zfail_plan::scene::{Bounds, Instance, Light, LightKind, Material, Mesh, Pose, Scene};
 use zfail_plan::view::View;
 
 /// Uploaded meshes and materials, registered casters, and the plain data that frames are made from.
@@ -27,6 +27,8 @@ pub struct SceneOnGpu {
     pub background: [f32; 3],
     /// Radiance of the strongest emission.
     pub emission: [f32; 3],
+    /// The least roughness of any material.
+    pub roughness: f64,
     pub shadows: Shadows,
     casters: Vec<Caster>,
     /// By instance.
@@ -80,6 +82,7 @@ impl SceneOnGpu {
             ambient: scene.ambient,
             background: scene.background,
             emission,
+            roughness: scene.materials.iter().map(least_roughness).fold(1.0, f64::min),
             shadows,
             casters,
             caster_of,
@@ -137,12 +140,13 @@ impl SceneOnGpu {
         }
     }
 
-    /// Plans and uploads the volumes of `chosen` lights.
+    /// Plans and uploads the volumes of `chosen` lights, taken as `kinds`.
     pub fn plan(
         &mut self,
         gpu: &Gpu,
         view: &View,
         chosen: &[usize],
+        kinds: &[LightKind],
         settings: &Settings,
         counting: Counting,
     ) -> Result<Vec<LightStats>, RenderError> {
@@ -150,14 +154,17 @@ impl SceneOnGpu {
             .iter()
             .map(|&l| self.lights[l].excluded.iter().filter_map(|&instance| self.caster_of[instance]).collect())
             .collect();
-        let lights: Vec<ShadowLight<'_>> = chosen
-            .iter()
-            .zip(&excluded)
-            .map(|(&l, excluded)| ShadowLight { kind: self.lights[l].kind, excluded })
-            .collect();
+        let lights: Vec<ShadowLight<'_>> =
+            kinds.iter().zip(&excluded).map(|(&kind, excluded)| ShadowLight { kind, excluded }).collect();
         let (measures, receivers) = (settings.technique.measures(), &[self.bounds]);
         let frame = Frame { view, casters: &self.casters, lights: &lights, receivers, measures, counting };
         self.shadows.prepare(&gpu.device, &gpu.queue, &frame)?;
         Ok((0..chosen.len()).map(|light| self.shadows.stats(light)).collect())
     }
+}
+
+/// The least roughness of a material's points.
+fn least_roughness(material: &Material) -> f64 {
+    // A texture may hold 0.
+    if material.metallic_roughness_texture.is_some() { 0.0 } else { f64::from(material.roughness) }
 }

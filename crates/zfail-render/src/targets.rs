@@ -9,8 +9,8 @@ pub const VERDICTS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 pub const RADIANCE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Exposed radiance.
 pub const HDR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// The picture: shaders write it linear, its bytes are encoded.
-pub const LDR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+/// The picture, encoded for the display by the shaders: target formats that encode cost software rasterisers more.
+pub const LDR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 /// Distance along the view axis, an `f32` as four bytes, least significant first: sampled depth textures fail on some
 /// GL drivers.
@@ -39,7 +39,6 @@ pub struct Targets {
     /// The picture, single-sampled.
     pub ldr: wgpu::Texture,
     pub ldr_view: wgpu::TextureView,
-    ldr_samples: Option<wgpu::TextureView>,
     hdr: Option<HdrTargets>,
     verdicts: Option<Verdicts>,
 }
@@ -73,20 +72,9 @@ impl Targets {
             depth_stencil: view(&create(gpu, "depth-stencil", gpu.depth_stencil, size, samples)),
             ldr_view: view(&ldr),
             ldr,
-            ldr_samples: None,
             hdr: None,
             verdicts: None,
         })
-    }
-
-    /// The samples of the picture, or the picture itself, and what they are resolved to.
-    pub fn picture(&mut self, gpu: &Gpu) -> (&wgpu::TextureView, Option<&wgpu::TextureView>) {
-        if self.samples == 1 {
-            return (&self.ldr_view, None);
-        }
-        let (size, samples) = (self.size, self.samples);
-        let multi = self.ldr_samples.get_or_insert_with(|| view(&create(gpu, "picture samples", LDR, size, samples)));
-        (multi, Some(&self.ldr_view))
     }
 
     pub fn hdr(&mut self, gpu: &Gpu) -> &HdrTargets {

@@ -1,7 +1,15 @@
 //! Tone mapping of a clear colour, which no shader sees: as in `tone_map.wgsl` (tested against it).
 
+use crate::srgb;
+
+/// What the display gets for exposed `radiance`: tone-mapped, encoded, and opaque.
+pub fn displayed(radiance: [f32; 3]) -> [f64; 4] {
+    let [r, g, b] = tone_map(radiance).map(|c| f64::from(srgb::encoded(c)));
+    [r, g, b, 1.0]
+}
+
 /// Displayed linear colour of exposed `radiance`: the Khronos PBR Neutral tone mapper, clamped to the display.
-pub fn tone_map(radiance: [f32; 3]) -> [f32; 3] {
+fn tone_map(radiance: [f32; 3]) -> [f32; 3] {
     let [shoulder, desaturation] = [0.76, 0.15];
     let least = radiance.into_iter().fold(f32::INFINITY, f32::min);
     let offset = if least < 0.08 { least - 6.25 * least * least } else { 0.04 };

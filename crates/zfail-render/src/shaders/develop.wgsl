@@ -10,7 +10,7 @@ struct Exposure {
 struct Developed {
     // Exposed radiance.
     @location(0) hdr: vec4<f32>,
-    // Encoded for the display by the target's format.
+    // Encoded for the display.
     @location(1) ldr: vec4<f32>,
 }
 
@@ -31,6 +31,6 @@ fn develop(pixel: Pixel) -> Developed {
     let mean = 1.0 / f32(SAMPLES);
     return Developed(
         vec4<f32>(min(hdr * mean, vec3<f32>(65504.0)), 1.0),
-        vec4<f32>(ldr * mean, 1.0),
+        vec4<f32>(srgb_encode(ldr * mean), 1.0),
     );
 }

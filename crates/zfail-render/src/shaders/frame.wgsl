@@ -50,8 +50,5 @@ fn view_position(pixel: vec2<f32>, depth: f32) -> vec3<f32> {
 }
 
 fn towards_eye(position: vec3<f32>) -> vec3<f32> {
-    if frame.orthographic > 0.5 {
-        return vec3<f32>(0.0, 0.0, 1.0);
-    }
-    return normalize(-position);
+    return normalize(select(-position, vec3<f32>(0.0, 0.0, 1.0), frame.orthographic > 0.5));
 }

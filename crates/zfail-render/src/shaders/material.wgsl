@@ -42,7 +42,7 @@ struct Surface {
     emissive: vec3<f32>,
     // View space, unit: for shading, on the side of the eye for double-sided materials.
     normal: vec3<f32>,
-    // View space, unit: the triangle's own, on the side of the eye.
+    // View space, of any length: the triangle's own, on the side of the eye.
     geometric_normal: vec3<f32>,
 }
 
@@ -98,7 +98,7 @@ fn surface(in: Fragment, front: bool, eye: vec3<f32>) -> Surface {
     let uv_dx = dpdx(normal_uv);
     let uv_dy = dpdy(normal_uv);
 
-    let flat_normal = unit_or(cross(position_dx, position_dy), eye);
+    let flat_normal = cross(position_dx, position_dy);
 
     var out: Surface;
     out.albedo = base_color.rgb;
@@ -111,7 +111,8 @@ fn surface(in: Fragment, front: bool, eye: vec3<f32>) -> Surface {
 
     let side = select(-1.0, 1.0, front);
     let outward = side * out.geometric_normal;
-    var normal = unit_or(in.normal, outward);
+    // Meshes without normals are flat.
+    var normal = unit_or(select(in.normal, outward, dot(in.normal, in.normal) == 0.0), eye);
     if NORMAL {
         var tangent = vertex_tangent(in);
         var bitangent = vertex_bitangent(in);

@@ -68,7 +68,7 @@ fn shade(in: Fragment, front: bool, shadowed: u32) -> vec4<f32> {
         if !UNLIT {
             color = tone_map(color * frame.exposure);
         }
-        return vec4<f32>(color, 1.0);
+        return vec4<f32>(srgb_encode(color), 1.0);
     }
     if BLEND {
         return vec4<f32>(color * s.alpha, s.alpha);
