@@ -9,7 +9,12 @@ const SCENES: [(Kind, u64, [u32; 2], &str); 6] = [
     (Kind::Soup, 1003, [256, 160], "the same"),
     (Kind::NonManifold, 1073, [256, 160], "the same, in a sheet with a back"),
     (Kind::NonManifold, 1081, [256, 160], "the same"),
-    (Kind::EyeInside, 4, [256, 160], "counting from within a solid, its culled back faces were taken to hide its light cap"),
+    (
+        Kind::EyeInside,
+        4,
+        [256, 160],
+        "counting from within a solid, its culled back faces were taken to hide its light cap",
+    ),
     (Kind::EyeInside, 8, [256, 160], "the same"),
 ];
 

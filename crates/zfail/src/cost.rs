@@ -109,7 +109,8 @@ fn measure_disc(device: &Device, queue: &Queue, spokes: u32) -> Option<(f64, f64
             shadows.prepare(device, queue, &frame).ok()?;
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             clear(&mut encoder, &attachment, |_| {});
-            shadows.count_tiles(device, queue, &mut encoder, &depth).ok()?;
+            shadows.prepare_tiles(device, queue).ok()?;
+            shadows.count_tiles(device, &mut encoder, &depth);
             clear(&mut encoder, &attachment, |pass| shadows.draw(pass, &pipelines, 0));
             queue.submit([encoder.finish()]);
             device.poll(PollType::wait_indefinitely()).ok()?;

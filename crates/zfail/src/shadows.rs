@@ -69,7 +69,7 @@ pub struct Shadows {
     image: Rectangle,
     prepared: Option<Prepared>,
     tiled: Option<Tiled>,
-    /// Whether `tiled` belongs to the prepared frame and has been encoded.
+    /// Whether `tiled` belongs to the prepared frame.
     counted: bool,
     costs: CostModel,
 }
@@ -174,30 +174,35 @@ impl Shadows {
         self.costs = costs;
     }
 
-    /// Counts sides in a compute pass where that costs less than rasterising them. Optional, and exact either way: call
-    /// it after [`Self::prepare`], between the pass that finishes the depth of the view and those that [`Self::draw`].
-    /// `depth` is a view of the depth aspect alone, of a texture with one sample and the usage `TEXTURE_BINDING`.
-    /// Returns whether anything was encoded.
+    /// Chooses the lights whose sides a compute pass is to count, where that costs less than rasterising them. Optional,
+    /// and exact either way. Call it after [`Self::prepare`]; if it returns `true`, [`Self::count_tiles`] has to be
+    /// encoded before the frame's [`Self::draw`]s, and these have to go to targets with one sample.
     ///
     /// # Errors
     /// Lists that are too large for the device's buffers. All volumes are rasterised then.
-    pub fn count_tiles(
-        &mut self,
-        device: &Device,
-        queue: &Queue,
-        encoder: &mut CommandEncoder,
-        depth: &TextureView,
-    ) -> Result<bool, Error> {
+    pub fn prepare_tiles(&mut self, device: &Device, queue: &Queue) -> Result<bool, Error> {
         self.counted = false;
         let Some(prepared) = self.prepared.as_ref().filter(|p| p.measures.tiles != Tiles::Never) else {
             return Ok(false);
         };
         let tiled = self.tiled.get_or_insert_with(|| Tiled::new(device));
-        if tiled.choose(device, queue, prepared, self.planner.last(), &self.arena, self.costs)? {
-            tiled.pass.encode(device, encoder, depth);
-            self.counted = true;
-        }
+        self.counted = tiled.choose(device, queue, prepared, self.planner.last(), &self.arena, self.costs)?;
         Ok(self.counted)
+    }
+
+    /// Encodes the compute pass that [`Self::prepare_tiles`] has prepared, if any: after the pass that finishes the depth of
+    /// the view. `depth` is a view of the depth aspect alone, of a texture with one sample and the usage
+    /// `TEXTURE_BINDING`.
+    pub fn count_tiles(&self, device: &Device, encoder: &mut CommandEncoder, depth: &TextureView) {
+        if let Some(tiled) = self.tiled.as_ref().filter(|_| self.counted) {
+            tiled.pass.encode(device, encoder, depth);
+        }
+    }
+
+    /// Whether [`Self::count_tiles`] has something to encode for the prepared frame.
+    #[must_use]
+    pub fn counts_tiles(&self) -> bool {
+        self.counted
     }
 
     /// Figures of the tile pass for one light of the prepared frame, if it takes part.

@@ -7,7 +7,7 @@ mod stage;
 
 use stage::{Setup, Soup, stencil};
 use zfail::glam::{DAffine3, DMat3, DQuat, DVec3};
-use zfail::tiles::{Sides, TilePass};
+use zfail::tiles::{Sides, TilePass, VerdictPipeline};
 use zfail::zfail_plan::casting;
 use zfail::zfail_plan::plan::{self, Frame, Planner};
 use zfail::zfail_plan::scene::Bounds;
@@ -92,7 +92,7 @@ fn scene(seed: u64) -> Scene {
 
 /// What the rasterised volumes count, and the count at the near plane if it is the same everywhere.
 fn rasterised(scene: &Scene) -> Option<(Vec<u8>, Option<u8>)> {
-    let setup = Setup { counting: Counting::Raw, technique: Technique::EverittKilgard, ..Setup::default() };
+    let setup = Setup { counting: Counting::Raw, ..Setup::default() };
     let counts = stencil(&setup, &scene.view, &scene.meshes, scene.light)?;
     let at_near = Setup { depth_clear: 1.0, draw_depth: false, ..setup };
     let near = stencil(&at_near, &scene.view, &scene.meshes, scene.light)?;
@@ -127,7 +127,7 @@ fn tiled(scene: &Scene, near: u8, fault: Fault) -> Vec<u8> {
     let (technique, counting) = (Technique::EverittKilgard, Counting::Raw);
     let mut planner = Planner::new();
     let plan = planner
-        .plan(&Frame { view: &scene.view, casters: &casters, lights: &lights, technique, counting })
+        .plan(&Frame { view: &scene.view, casters: &casters, lights: &lights, receivers: &[], measures: technique.into(), counting })
         .expect("plan");
 
     let sides = plan.draws.iter().map(|draw| {
@@ -157,12 +157,12 @@ fn tiled(scene: &Scene, near: u8, fault: Fault) -> Vec<u8> {
     let mut pass = TilePass::new(&device);
     pass.begin(&scene.view, &visible);
     for level in 0..LEVELS as i32 {
-        pass.add(&device, i32::from(near) - level, sides.clone()).expect("a small light");
+        pass.add(&device, i32::from(near) - level, sides.clone(), |_| true).expect("a small light");
     }
     pass.upload(&device, &queue).expect("small lists");
 
     let target = Target { colors: &[], depth_stencil: setup.depth_stencil, samples: 1 };
-    let pipeline = pass.pipeline(&device, &target).expect("one sample");
+    let pipeline = VerdictPipeline::new(&device, &target).expect("one sample");
     let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: None,
         size: wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 },
@@ -198,7 +198,7 @@ fn tiled(scene: &Scene, near: u8, fault: Fault) -> Vec<u8> {
     let mut counts = vec![LEVELS as u8; (SIZE[0] * SIZE[1]) as usize];
     for level in 0..LEVELS {
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        pass.draw(&device, &mut begin(&mut encoder, wgpu::LoadOp::Load), &pipeline, level);
+        pass.draw(&mut begin(&mut encoder, wgpu::LoadOp::Load), &pipeline, level);
         let lit = stage::read_stencil(&device, &queue, encoder, &texture);
         for (count, _) in counts.iter_mut().zip(lit).filter(|(_, stencil)| *stencil == 0) {
             *count = level as u8;
@@ -339,9 +339,9 @@ fn what_cannot_be_tiled_is_refused() {
     let Some((device, _)) = stage::device(&Setup::default()) else { return };
     let mut pass = TilePass::new(&device);
     let target = Target { colors: &[], depth_stencil: wgpu::TextureFormat::Depth32FloatStencil8, samples: 4 };
-    assert!(pass.pipeline(&device, &target).is_none());
+    assert!(VerdictPipeline::new(&device, &target).is_none());
     let mut view = scene(0).view;
     view.projection = Projection::Orthographic { ymag: 1.0, near: 0.0, far: 1.0 };
     pass.begin(&view, &Bounds::of([DVec3::ZERO]));
-    assert_eq!(pass.add(&device, 0, []), None);
+    assert_eq!(pass.add(&device, 0, [], |_| true), None);
 }

@@ -129,7 +129,8 @@ pub fn draw(
         }
     }
     if setup.samples == 1 {
-        shadows.count_tiles(device, queue, &mut encoder, &depth).expect("tiles");
+        shadows.prepare_tiles(device, queue).expect("tiles");
+        shadows.count_tiles(device, &mut encoder, &depth);
     }
     shadows.draw(&mut begin(&mut encoder, &attachment, wgpu::LoadOp::Load), &pipelines, 0);
     (read_stencil(device, queue, encoder, &texture), shadows.plan().clone())
@@ -150,7 +151,7 @@ fn begin<'e>(
     })
 }
 
-fn draw_depth(
+pub fn draw_depth(
     device: &wgpu::Device,
     pass: &mut wgpu::RenderPass<'_>,
     setup: &Setup,
