@@ -2,14 +2,16 @@
 //! a sun, whatever lights the file has of its own.
 //!
 //! Models are looked for in `ZFAIL_ASSETS`, or in `shared/assets` beside the checkout, and skipped where absent.
-//! `ZFAIL_SIZE=WxH` sets the size of the images, `ZFAIL_MODEL` limits the test to one file.
+//! `ZFAIL_SIZE=WxH` sets the size of the images, `ZFAIL_MODEL` limits the test to one file, `ZFAIL_FILES` (a list like
+//! `PATH`) names other files to test instead, also a moment of their first animation, and `ZFAIL_TECHNIQUE` the technique.
+//! Masks are counted by tiles, raw counts are rasterised: both are checked.
 
 use std::{env, path::PathBuf};
 use zfail_exact::bench::{self, Images};
 use zfail_exact::tally::Tally;
 use zfail_plan::glam::DVec3;
 use zfail_plan::scene::{Light, LightKind, Scene};
-use zfail_render::{Gpu, GpuOptions, Settings};
+use zfail_render::{Gpu, GpuOptions, Settings, Technique, Tiles};
 
 /// Files without compression, skinned ones in rest pose.
 const MODELS: [&str; 20] = [
@@ -60,7 +62,9 @@ fn test_lights(scene: &Scene) -> Vec<Light> {
 /// Compares every light of a scene from one of its cameras.
 fn judge(gpu: &Gpu, name: &str, scene: &Scene, camera: usize, masks: &mut Tally, failures: &mut Vec<String>) {
     let view = scene.cameras[camera].view(size(), &scene.bounds());
-    let rendered = bench::render(gpu, scene, &view, &Settings::default()).unwrap_or_else(|e| panic!("{name}: {e}"));
+    let technique = env::var("ZFAIL_TECHNIQUE").map_or(Technique::Auto, |t| t.parse().expect("a technique's name"));
+    let settings = Settings { technique, tiles: Tiles::Always, ..Settings::default() };
+    let rendered = bench::render(gpu, scene, &view, &settings).unwrap_or_else(|e| panic!("{name}: {e}"));
     let truths = bench::truths(scene, &view).unwrap_or_else(|e| panic!("{name}: {e}"));
     let comparisons = Images { rendered, truths }.compare().unwrap_or_else(|e| panic!("{name}: {e}"));
     let mut own = Tally::default();
@@ -100,6 +104,28 @@ fn no_pixel_of_a_real_model_is_wrong() {
         let test = test_lights(&scene);
         scene.lights.extend(test);
         judge(&gpu, model.split('/').next().unwrap_or(model), &scene, 0, &mut masks, &mut failures);
+    }
+    println!("all                  {masks}");
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn no_pixel_of_other_files_is_wrong() {
+    let Some(files) = env::var_os("ZFAIL_FILES") else { return };
+    let gpu = Gpu::new(&GpuOptions::default()).expect("a graphics adapter");
+    let (mut masks, mut failures) = (Tally::default(), Vec::new());
+    for path in env::split_paths(&files) {
+        let animated = zfail_scene::load_animated(&path, &zfail_scene::Limits::default())
+            .map(|(a, _)| a)
+            .unwrap_or_else(|e| panic!("{e}"));
+        let mut scene = animated.scene.clone();
+        zfail_scene::complete(&mut scene);
+        let name = path.file_stem().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+        judge(&gpu, &name, &scene, 0, &mut masks, &mut failures);
+        if !animated.animations.is_empty() {
+            scene.set_pose(&animated.pose(0, 0.3));
+            judge(&gpu, &format!("{name} at 0.3 s"), &scene, 0, &mut masks, &mut failures);
+        }
     }
     println!("all                  {masks}");
     assert!(failures.is_empty(), "{}", failures.join("\n"));

@@ -11,7 +11,7 @@ use cpu_time::ProcessTime;
 use indicatif::ProgressBar;
 use std::time::{Duration, Instant};
 use zfail_plan::scene::Pose;
-use zfail_render::{FrameStats, Gpu, RenderError, Renderer, Settings, Technique};
+use zfail_render::{Exposure, FrameStats, Gpu, RenderError, Renderer, Settings, Technique};
 
 /// Frames before the clock counts: pipelines are compiled, buffers have grown, caches are filled.
 const WARM_UP: usize = 2;
@@ -61,8 +61,15 @@ impl Setup<'_> {
     /// # Errors
     /// If the renderer or the device fails.
     pub fn play(&self, course: &Course, progress: &ProgressBar) -> Result<Samples, Error> {
-        let settings =
-            |technique, shadows| Settings { technique, shadows, samples: self.samples, ..Settings::default() };
+        // Known beforehand, as in a program that draws one frame after the other: no frame waits for its own brightness.
+        let exposure = Exposure::Ev(0.0);
+        let settings = |technique, shadows| Settings {
+            technique,
+            shadows,
+            samples: self.samples,
+            exposure,
+            ..Settings::default()
+        };
         let on = self.techniques.iter().map(|&technique| settings(technique, true));
         let variants = on.chain([settings(Technique::default(), false)]);
         let mut players: Vec<Player<'_>> =

@@ -2,7 +2,7 @@
 //!
 //! In: weights of every pair of one light. Out: a batch number per triangle, or none where one batch will do.
 
-use super::meridians::{Crossings, Lines};
+use super::meridians::{self, Crossings, Lines};
 use super::pair::{Pair, Role};
 use super::placed::Placed;
 use super::{Counting, Frame};
@@ -25,6 +25,7 @@ pub(super) struct Batching {
     /// Orthographic views change weights, and with them the pairs' batches.
     orthographic: bool,
     divided: bool,
+    crossings: Crossings,
 }
 
 /// A casting triangle with its directions from the light.
@@ -61,7 +62,7 @@ impl Batching {
         self.light = Some(kind);
         self.orthographic = orthographic;
 
-        self.divided = !quickly_within(frame, &kind, pairs, placed) && {
+        self.divided = !quickly_within(frame, &kind, pairs, placed, &mut self.crossings) && {
             let (items, cones, shape) = cones(frame, &kind, pairs, placed);
             let within = stack::is_within(&cones, &shape, SINGLE);
             if !within {
@@ -76,23 +77,36 @@ impl Batching {
 }
 
 /// Whether silhouettes alone prove that no ray crosses more layers than a stencil can count.
-fn quickly_within(frame: &Frame<'_>, kind: &LightKind, pairs: &mut [Pair], placed: &[Placed]) -> bool {
+fn quickly_within(
+    frame: &Frame<'_>,
+    kind: &LightKind,
+    pairs: &mut [Pair],
+    placed: &[Placed],
+    sum: &mut Crossings,
+) -> bool {
     let mut bounds = Bounds::EMPTY;
     for caster in placed.iter().filter(|p| !p.world.is_empty()) {
         bounds.add(caster.world.min);
         bounds.add(caster.world.max);
     }
     let lines = Lines::new(kind.homogeneous(), &bounds);
-    let mut all = Crossings::NONE;
+    sum.clear(meridians::COARSE);
     let active = |(_, (pair, _)): &(usize, (&mut Pair, &Placed))| pair.role != Role::Idle;
     for (c, (pair, caster)) in pairs.iter_mut().zip(placed).enumerate().filter(active) {
         let topology = frame.casters[c].topology;
         // Batches would put sides between triangles that have none.
         pair.unite();
         pair.build_sides(topology);
-        all.merge(pair.crossings(topology, &caster.world_from_object, lines));
+        sum.merge(pair.crossings(topology, &caster.world_from_object, lines));
     }
-    all.bound() <= SINGLE
+    if sum.bound() <= SINGLE {
+        return true;
+    }
+    sum.clear(meridians::FINE);
+    for (c, (pair, caster)) in pairs.iter().zip(placed).enumerate().filter(|(_, (pair, _))| pair.role != Role::Idle) {
+        pair.count_crossings(frame.casters[c].topology, &caster.world_from_object, lines, sum);
+    }
+    sum.bound() <= SINGLE
 }
 
 /// Distributes casting triangles over batches.

@@ -5,6 +5,8 @@
 //! line crosses silhouette edges; what goes up has to come down, so the count is at most half of poles and crossings
 //! together. The lines are binned into columns, and every edge counts in all columns it touches. This costs as much as the
 //! silhouette is long; the exact subdivision of [`crate::stack`] costs as much as the mesh is large.
+//!
+//! The poles lie askew to the axes of the world, for edges along a line all count in one column, and upright edges abound.
 
 use super::near_count;
 use crate::casting::ObjectLight;
@@ -13,13 +15,17 @@ use crate::topology::Topology;
 use glam::{DAffine3, DVec3, DVec4};
 use std::f64::consts::{PI, TAU};
 
-/// Columns of directions.
-const COLUMNS: usize = 256;
+/// Columns of directions: those kept for every caster, and those tried where they are too coarse.
+pub(super) const COARSE: usize = 256;
+pub(super) const FINE: usize = 8192;
+
+/// The direction of one pole, and two directions across it; no small multiple of any axis.
+const POLE: DVec3 = DVec3::new(0.260_604_5, 0.864_313_2, 0.430_226_6);
 
 /// How lines of directions are numbered, the same for all casters of a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Lines {
-    /// Great semicircles between world +y and -y about a point light, by azimuth.
+    /// Great semicircles between both poles about a point light, by azimuth.
     Meridians,
     /// Parallel rays: by where they cross an axis, in steps. Columns repeat, which can only raise the bound.
     Parallels {
@@ -34,7 +40,8 @@ impl Lines {
         if light.w != 0.0 {
             return Self::Meridians;
         }
-        let across = light.truncate().normalize_or(DVec3::Y).any_orthonormal_vector();
+        let (u, v) = light.truncate().normalize_or(DVec3::Y).any_orthonormal_pair();
+        let across = u * 0.5547 + v * 0.8321;
         // A power of two, so that it seldom changes.
         let extent = 2.0 * bounds.half().length();
         let step = if extent > 0.0 && extent.is_finite() { (extent / 100.0).log2().ceil().exp2() } else { 1.0 };
@@ -43,28 +50,34 @@ impl Lines {
 }
 
 /// What one caster adds to every column.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Crossings {
-    columns: [u32; COLUMNS],
+    columns: Vec<u32>,
     /// Layers at both poles together.
     poles: u32,
 }
 
 impl Crossings {
-    /// No caster.
-    pub const NONE: Self = Self { columns: [0; COLUMNS], poles: 0 };
+    /// No caster, in so many columns.
+    pub fn clear(&mut self, columns: usize) {
+        self.columns.clear();
+        self.columns.resize(columns, 0);
+        self.poles = 0;
+    }
 
-    /// The crossings of one caster's silhouette for `light` in its object space. `silhouette` yields each edge as often
-    /// as it has sides.
-    pub fn of(
+    /// Adds the crossings of one caster's silhouette for `light` in its object space. `silhouette` yields each edge as
+    /// often as it has sides.
+    pub fn count(
+        &mut self,
         topology: &Topology,
         weights: &[i8],
         silhouette: impl Iterator<Item = [u32; 2]>,
         world_from_object: &DAffine3,
         light: ObjectLight,
         lines: Lines,
-    ) -> Self {
-        let mut out = Self::NONE;
+    ) {
+        let columns = self.columns.len() as f64;
+        let (east, north) = POLE.any_orthonormal_pair();
         let origin = light.truncate().as_dvec3();
         let matrix = world_from_object.matrix3;
         for edge in silhouette {
@@ -73,42 +86,43 @@ impl Crossings {
                 Lines::Meridians => {
                     let [a, b] = ends.map(|p| {
                         let d = matrix * (p - origin);
-                        d.z.atan2(d.x)
+                        d.dot(north).atan2(d.dot(east))
                     });
                     let turn = (b - a).rem_euclid(TAU);
                     // The arc of the edge is less than half a circle; through a pole it may be either half.
                     let (from, by) = if turn <= PI { (a, turn) } else { (b, TAU - turn) };
-                    let scale = COLUMNS as f64 / TAU;
+                    let scale = columns / TAU;
                     if by > 0.999 * PI || !by.is_finite() {
-                        out.add(0.0, COLUMNS as f64);
+                        self.add(0.0, columns);
                     } else {
-                        out.add(from * scale, (from + by) * scale);
+                        self.add(from * scale, (from + by) * scale);
                     }
                 }
                 Lines::Parallels { axis } => {
                     let [a, b] = ends.map(|p| axis.dot(world_from_object.transform_point3(p)));
-                    out.add(a.min(b), a.max(b));
+                    let scale = columns / COARSE as f64;
+                    self.add(a.min(b) * scale, a.max(b) * scale);
                 }
             }
         }
         if lines == Lines::Meridians {
             let object_from_world = matrix.inverse();
-            for up in [DVec3::Y, DVec3::NEG_Y] {
-                let way = object_from_world * up;
+            for pole in [POLE, -POLE] {
+                let way = object_from_world * pole;
                 if crosses(&topology.bounds(), origin, way) {
-                    out.poles += near_count::layers(topology, weights, light, way.extend(0.0));
+                    self.poles += near_count::layers(topology, weights, light, way.extend(0.0));
                 }
             }
         }
-        out
     }
 
     fn add(&mut self, from: f64, to: f64) {
         let (first, last) = (from.floor(), to.floor());
-        if last - first < COLUMNS as f64 - 1.0 {
+        let columns = self.columns.len() as i64;
+        if last - first < columns as f64 - 1.0 {
             let first = first as i64;
             for i in first..=last as i64 {
-                self.columns[i.rem_euclid(COLUMNS as i64) as usize] += 1;
+                self.columns[i.rem_euclid(columns) as usize] += 1;
             }
         } else {
             self.columns.iter_mut().for_each(|column| *column += 1);

@@ -1,7 +1,7 @@
 //! One light and one caster: facing, silhouette and caps, kept while the light stands still in object space.
 
 use super::caps::Clusters;
-use super::meridians::{Crossings, Lines};
+use super::meridians::{self, Crossings, Lines};
 use super::near_count::{self, NearCount};
 use super::off_screen::Parts;
 use super::placed::Placed;
@@ -59,8 +59,12 @@ pub(super) struct Pair {
     /// The visible one of each group of coincident triangles for which light caps were built, and scratch.
     visible: Vec<u32>,
     now_visible: Vec<u32>,
-    crossings: Option<Box<(DAffine3, Lines, Crossings)>>,
+    /// For what `crossings` were counted, if they are valid.
+    crossed_as: Option<(DAffine3, Lines)>,
+    crossings: Crossings,
+    /// What is known of the near rectangle, if `near_valid`.
     near: Option<Box<(Pyramid, Option<NearCount>)>>,
+    near_valid: bool,
 }
 
 /// A closed volume of some of the pair's triangles.
@@ -117,8 +121,8 @@ impl Pair {
 
     fn unbuild(&mut self) {
         self.built = false;
-        self.near = None;
-        self.crossings = None;
+        self.near_valid = false;
+        self.crossed_as = None;
     }
 
     /// Replaces the division into batches.
@@ -201,15 +205,17 @@ impl Pair {
         if piece.cap.is_some() || !self.batch_of.is_empty() {
             return None;
         }
-        if let Some(known) = &self.near
-            && known.0 == pyramid
-        {
+        if let Some(known) = self.near.as_ref().filter(|known| self.near_valid && known.0 == pyramid) {
             return known.1;
         }
         let sides = &piece.indices[..piece.volume.sides.end as usize];
         let stride = volume::side_len(is_converging(self.light, self.planar));
         let count = near_count::near_count(topology, &self.weights, sides, stride, &pyramid);
-        self.near = Some(Box::new((pyramid, count)));
+        match &mut self.near {
+            Some(near) => **near = (pyramid, count),
+            None => self.near = Some(Box::new((pyramid, count))),
+        }
+        self.near_valid = true;
         count
     }
 
@@ -306,18 +312,32 @@ impl Pair {
         drawn
     }
 
-    /// How often lines of directions cross the silhouette.
+    /// How often lines of directions cross the silhouette, coarsely.
     pub fn crossings(&mut self, topology: &Topology, world_from_object: &DAffine3, lines: Lines) -> &Crossings {
-        if self.crossings.as_ref().is_none_or(|known| (known.0, known.1) != (*world_from_object, lines)) {
-            let stride = volume::side_len(is_converging(self.light, self.planar));
-            let silhouette = self.pieces[..self.live].iter().flat_map(|piece| {
-                let sides = &piece.indices[..piece.volume.sides.end as usize];
-                sides.chunks_exact(stride).map(|side| [side[0] >> 1, side[1] >> 1])
-            });
-            let crossings = Crossings::of(topology, &self.weights, silhouette, world_from_object, self.light, lines);
-            self.crossings = Some(Box::new((*world_from_object, lines, crossings)));
+        if self.crossed_as != Some((*world_from_object, lines)) {
+            let mut crossings = std::mem::take(&mut self.crossings);
+            crossings.clear(meridians::COARSE);
+            self.count_crossings(topology, world_from_object, lines, &mut crossings);
+            self.crossings = crossings;
+            self.crossed_as = Some((*world_from_object, lines));
         }
-        self.crossings.as_ref().map_or(&Crossings::NONE, |known| &known.2)
+        &self.crossings
+    }
+
+    /// Adds how often lines of directions cross the silhouette.
+    pub fn count_crossings(
+        &self,
+        topology: &Topology,
+        world_from_object: &DAffine3,
+        lines: Lines,
+        crossings: &mut Crossings,
+    ) {
+        let stride = volume::side_len(is_converging(self.light, self.planar));
+        let silhouette = self.pieces().iter().flat_map(|piece| {
+            let sides = &piece.indices[..piece.volume.sides.end as usize];
+            sides.chunks_exact(stride).map(|side| [side[0] >> 1, side[1] >> 1])
+        });
+        crossings.count(topology, &self.weights, silhouette, world_from_object, self.light, lines);
     }
 
     /// One more than the last batch in which the pair draws anything.
