@@ -102,8 +102,7 @@ pub fn reaches(kind: &LightKind, bounds: &Bounds) -> bool {
 pub fn is_visible(kind: &LightKind, view: &View) -> bool {
     match *kind {
         LightKind::Point { position, range } | LightKind::Spot { position, range, .. } if range.is_finite() => {
-            let half = DVec3::splat(range);
-            scissor::rectangle(view, &Bounds { min: position - half, max: position + half }.corners()).is_some()
+            scissor::of_ball(view, position - view.eye(), range).is_some()
         }
         _ => true,
     }

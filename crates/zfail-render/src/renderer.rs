@@ -240,7 +240,7 @@ impl<'g> Renderer<'g> {
                 span: spans.light(light),
             });
             let verdict_view = &targets.verdicts(gpu, layouts).view;
-            pass.encode(&mut encoder, verdict_view, &depth_stencil, &self.frame, scene, verdicts, (timer, Some(0)));
+            pass.encode(&mut encoder, [verdict_view, &depth_stencil], &self.frame, scene, verdicts, (timer, Some(0)));
         }
 
         let solid = scene.draws.solid.iter().filter(|_| part.solid);

@@ -82,12 +82,11 @@ impl VerdictPass {
         }
     }
 
-    /// Fills depth and verdicts, the first light's in the lowest bit of red.
+    /// Fills verdicts, the first light's in the lowest bit of red, and depth; `timer` comes with the span of the pass.
     pub fn encode(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        verdicts: &wgpu::TextureView,
-        depth_stencil: &wgpu::TextureView,
+        [verdicts, depth_stencil]: [&wgpu::TextureView; 2],
         frame: &FrameData,
         scene: &SceneOnGpu,
         lights: impl Iterator<Item = Verdict>,
