@@ -143,11 +143,13 @@ impl DrawList {
         }
     }
 
-    /// Orders everything for `view`; `centers` are the instances' in world space.
-    pub fn arrange(&mut self, view: &View, instances: &[Instance], centers: impl Fn(usize) -> DVec3) {
+    /// Orders everything for `view`; `bounds` are the instances' in world space. What ends first is in front: rooms and
+    /// floors come last, wherever their centres are.
+    pub fn arrange(&mut self, view: &View, instances: &[Instance], bounds: &[Bounds]) {
         let back = view.world_from_view.matrix3.z_axis;
+        let end = |b: &Bounds| back.dot(view.eye() - b.center()) + back.abs().dot(b.half());
         self.distances.clear();
-        self.distances.extend((0..instances.len()).map(|i| back.dot(view.eye() - centers(i))));
+        self.distances.extend(bounds.iter().map(end));
         self.mirrored.clear();
         self.mirrored.extend(instances.iter().map(|i| i.world_from_object.matrix3.determinant() < 0.0));
         let (distances, mirrored) = (&self.distances, &self.mirrored);

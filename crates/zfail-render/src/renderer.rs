@@ -246,8 +246,8 @@ impl<'g> Renderer<'g> {
             let depth = targets.depth.clone().filter(|_| shadows.counts_tiles());
             let tiles = depth.as_ref().map(|depth| (&gpu.device, depth));
             let verdict_view = &targets.verdicts(gpu, layouts).view;
-            let timer = (timer, Some(0));
-            pass.encode(&mut encoder, verdict_view, &depth_stencil, &self.frame, scene, verdicts, tiles, timer);
+            let views = [verdict_view, &depth_stencil];
+            pass.encode(&mut encoder, views, &self.frame, scene, verdicts, tiles, (timer, Some(0)));
         }
 
         let solid = scene.draws.solid.iter().filter(|_| part.solid);

@@ -126,8 +126,7 @@ impl SceneOnGpu {
 
     /// Orders what is drawn for `view`.
     pub fn arrange(&mut self, view: &View) {
-        let bounds = &self.instance_bounds;
-        self.draws.arrange(view, &self.instances, |i| bounds[i].center());
+        self.draws.arrange(view, &self.instances, &self.instance_bounds);
     }
 
     /// The lights that `settings` choose, as indices into [`Self::lights`].

@@ -82,13 +82,12 @@ impl VerdictPass {
         }
     }
 
-    /// Fills depth and verdicts, the first light's in the lowest bit of red. With `tiles`, the device and the depth for
-    /// reading, lights that the tile pass counts are counted there.
+    /// Fills verdicts, the first light's in the lowest bit of red, and depth; `timer` comes with the span of the pass. With
+    /// `tiles`, the device and the depth for reading, lights that the tile pass counts are counted there.
     pub fn encode(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        verdicts: &wgpu::TextureView,
-        depth_stencil: &wgpu::TextureView,
+        [verdicts, depth_stencil]: [&wgpu::TextureView; 2],
         frame: &FrameData,
         scene: &SceneOnGpu,
         lights: impl Iterator<Item = Verdict>,
