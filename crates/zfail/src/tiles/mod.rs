@@ -59,6 +59,8 @@ pub struct TilePass {
 #[derive(Debug)]
 struct Light {
     base: i32,
+    /// Where it begins among all lights' rows of tiles.
+    row: u32,
     /// Pixels that can be in shadow.
     scissor: Rectangle,
 }
@@ -102,7 +104,7 @@ impl TilePass {
         });
         let verdict_layout = device.create_bind_group_layout(&BindGroupLayoutDescriptor {
             label: Some("tile verdict"),
-            entries: &[sampled(0, ShaderStages::FRAGMENT, TextureSampleType::Uint, TextureViewDimension::D2Array)],
+            entries: &[sampled(0, ShaderStages::FRAGMENT, TextureSampleType::Uint)],
         });
         Self {
             count,
@@ -214,8 +216,9 @@ impl TilePass {
         let pairs = self.bins.pairs();
         self.found.clear();
         self.bins.append(&mut self.entries, &mut self.found, &mut self.places);
-        let light = self.lights.len() as u32;
-        if !buffers::fit(&device.limits(), self.quads.len(), self.entries.len(), self.lights.len() + 1) {
+        let rows = self.size[1].div_ceil(TILE);
+        let row = self.lights.len() as u32 * rows;
+        if !buffers::fit(&device.limits(), self.quads.len(), self.entries.len(), (row + rows) as usize) {
             self.quads.truncate(before.0);
             self.entries.truncate(before.1);
             self.places.truncate(before.2);
@@ -224,12 +227,12 @@ impl TilePass {
         self.groups.extend(self.found.iter().map(|&bins::Group { first, length }| GroupRecord {
             first,
             length,
-            light,
+            row,
             base,
         }));
         let places = &self.places[before.2..];
         let scissor = if base == 0 { around(places, self.size) } else { [0, 0, self.size[0], self.size[1]] };
-        self.lights.push(Light { base, scissor });
+        self.lights.push(Light { base, row, scissor });
         let tiles = places.iter().filter(|&&place| place != bins::NO_TILE).count();
         Some(TileStats { quads: self.quads.len() - before.0, pairs, tiles })
     }
@@ -269,8 +272,8 @@ impl TilePass {
     ///
     /// Sets pipeline, bind group 0, stencil reference and scissor.
     pub fn draw(&self, device: &Device, pass: &mut RenderPass<'_>, pipeline: &VerdictPipeline, light: usize) {
-        let Some(Light { scissor: [x, y, width, height], .. }) = self.lights.get(light) else { return };
-        if *width == 0 || *height == 0 {
+        let Some(&Light { row, scissor: [x, y, width, height], .. }) = self.lights.get(light) else { return };
+        if width == 0 || height == 0 {
             return;
         }
         let bindings = device.create_bind_group(&BindGroupDescriptor {
@@ -278,12 +281,11 @@ impl TilePass {
             layout: &self.verdict_layout,
             entries: &[BindGroupEntry { binding: 0, resource: BindingResource::TextureView(self.buffers.shadowed()) }],
         });
-        let light = light as u32;
-        pass.set_scissor_rect(*x, *y, *width, *height);
+        pass.set_scissor_rect(x, y, width, height);
         pass.set_pipeline(&pipeline.0);
         pass.set_bind_group(0, &bindings, &[]);
         pass.set_stencil_reference(SHADOWED);
-        pass.draw(0..3, light..light + 1);
+        pass.draw(0..3, row..row + 1);
     }
 }
 
@@ -300,12 +302,8 @@ fn around(places: &[u32], size: [u32; 2]) -> Rectangle {
     [x, y, (hi[0] * TILE).min(size[0]) - x, (hi[1] * TILE).min(size[1]) - y]
 }
 
-fn sampled(
-    binding: u32,
-    visibility: ShaderStages,
-    sample_type: TextureSampleType,
-    view_dimension: TextureViewDimension,
-) -> BindGroupLayoutEntry {
+fn sampled(binding: u32, visibility: ShaderStages, sample_type: TextureSampleType) -> BindGroupLayoutEntry {
+    let view_dimension = TextureViewDimension::D2;
     let ty = BindingType::Texture { sample_type, view_dimension, multisampled: false };
     BindGroupLayoutEntry { binding, visibility, ty, count: None }
 }
@@ -318,7 +316,7 @@ fn count_layout(device: &Device) -> BindGroupLayout {
         count: None,
     };
     let list = BufferBindingType::Storage { read_only: true };
-    let texture = |binding, sample_type| sampled(binding, ShaderStages::COMPUTE, sample_type, TextureViewDimension::D2);
+    let texture = |binding, sample_type| sampled(binding, ShaderStages::COMPUTE, sample_type);
     device.create_bind_group_layout(&BindGroupLayoutDescriptor {
         label: Some("tile counts"),
         entries: &[
@@ -335,7 +333,7 @@ fn count_layout(device: &Device) -> BindGroupLayout {
                 ty: BindingType::StorageTexture {
                     access: StorageTextureAccess::WriteOnly,
                     format: TextureFormat::R32Uint,
-                    view_dimension: TextureViewDimension::D2Array,
+                    view_dimension: TextureViewDimension::D2,
                 },
                 count: None,
             },

@@ -104,7 +104,7 @@ fn functions_agree_with_solving_for_the_point() {
             let Some((distance, point)) = met else { continue };
             assert!((depth * distance / NEAR - 1.0).abs() < 1e-3, "trial {trial}: {depth} at {distance}");
             if point.abs().max_element() < 9.0 && distance > NEAR {
-                let tile = (pixel[1] / TILE) << 16 | pixel[0] / TILE;
+                let tile = ((pixel[1] / TILE) << 16) | (pixel[0] / TILE);
                 assert!(places.contains(&tile), "trial {trial}, pixel {pixel:?} is not in the footprint");
             }
             hits += 1;
