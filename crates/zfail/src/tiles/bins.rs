@@ -129,7 +129,7 @@ impl Bins {
             groups.push(Group { first: end as u32, length });
             for (lane, &tile) in tiles.iter().enumerate() {
                 self.lists[tile as usize] = (end + lane) as u32;
-                places.push((tile / self.tiles[0]) << 16 | tile % self.tiles[0]);
+                places.push(((tile / self.tiles[0]) << 16) | (tile % self.tiles[0]));
             }
             places.resize(places.len().next_multiple_of(LANES), NO_TILE);
             end += length as usize * LANES;

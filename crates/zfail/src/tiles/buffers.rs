@@ -10,7 +10,7 @@ use bytemuck::{Pod, Zeroable};
 use wgpu::{
     BindGroupEntry, BindingResource, Buffer, BufferDescriptor, BufferUsages, Device, Extent3d, Limits, Origin3d, Queue,
     TexelCopyBufferLayout, TexelCopyTextureInfo, Texture, TextureAspect, TextureDescriptor, TextureDimension,
-    TextureFormat, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension,
+    TextureFormat, TextureUsages, TextureView, TextureViewDescriptor,
 };
 
 /// Texels in a row of either texture, as `count.wgsl` has it.
@@ -26,16 +26,14 @@ const WORKGROUPS: usize = 65535;
 pub(super) struct GroupRecord {
     pub first: u32,
     pub length: u32,
-    pub light: u32,
+    pub row: u32,
     pub base: i32,
 }
 
-/// Whether a device can hold lists of these lengths.
-pub(super) fn fit(limits: &Limits, quads: usize, entries: usize, lights: usize) -> bool {
-    let rows = limits.max_texture_dimension_2d as usize;
-    (quads * QUAD).div_ceil(ROW) <= rows
-        && entries.div_ceil(ROW) <= rows
-        && lights <= limits.max_texture_array_layers as usize
+/// Whether a device can hold lists of these lengths and so many rows of tiles.
+pub(super) fn fit(limits: &Limits, quads: usize, entries: usize, rows: usize) -> bool {
+    let lists = [(quads * QUAD).div_ceil(ROW), entries.div_ceil(ROW), rows];
+    lists.iter().all(|&rows| rows <= limits.max_texture_dimension_2d as usize)
 }
 
 /// The dispatch that has at least as many workgroups as there are groups.
@@ -65,12 +63,12 @@ impl Buffers {
             places: buffer(device, BufferUsages::STORAGE, (LANES * size_of::<u32>()) as u64),
             entries: list(device, TextureFormat::R32Uint, 1),
             quads: list(device, TextureFormat::Rgba32Float, 1),
-            shadowed: shadowed(device, [1; 3]),
+            shadowed: shadowed(device, [1; 2]),
             rows: Vec::new(),
         }
     }
 
-    /// One bit a pixel: whether it is in shadow, one layer for each light.
+    /// One bit a pixel: whether it is in shadow, one light below the other.
     pub fn shadowed(&self) -> &TextureView {
         &self.shadowed
     }
@@ -116,15 +114,15 @@ impl Buffers {
         self.write_rows(device, queue, TextureFormat::Rgba32Float, bytemuck::cast_slice(quads));
 
         let [across, down] = size.map(|n| n.div_ceil(TILE));
-        let wanted = [across * 2, down, bases.len() as u32];
+        let wanted = [across * 2, down * bases.len() as u32];
         let texture = self.shadowed.texture();
-        if [texture.width(), texture.height()] != wanted[..2] || texture.depth_or_array_layers() < wanted[2] {
+        if texture.width() != wanted[0] || texture.height() < wanted[1] {
             self.shadowed = shadowed(device, wanted);
         }
-        let layer = (wanted[0] * wanted[1]) as usize * size_of::<u32>();
+        let light = (wanted[0] * down) as usize * size_of::<u32>();
         self.rows.clear();
         for base in bases {
-            self.rows.resize(self.rows.len() + layer, if base == 0 { 0 } else { 0xff });
+            self.rows.resize(self.rows.len() + light, if base == 0 { 0 } else { 0xff });
         }
         copy(queue, self.shadowed.texture(), wanted, &self.rows);
         Ok(())
@@ -142,7 +140,7 @@ impl Buffers {
         self.rows.clear();
         self.rows.extend_from_slice(texels);
         self.rows.resize(rows * row, 0);
-        copy(queue, target.texture(), [ROW as u32, rows as u32, 1], &self.rows);
+        copy(queue, target.texture(), [ROW as u32, rows as u32], &self.rows);
     }
 }
 
@@ -172,13 +170,13 @@ fn write<T: Pod>(
     Ok(())
 }
 
-fn copy(queue: &Queue, texture: &Texture, [width, height, layers]: [u32; 3], texels: &[u8]) {
+fn copy(queue: &Queue, texture: &Texture, [width, height]: [u32; 2], texels: &[u8]) {
     let texel = texture.format().block_copy_size(None).unwrap_or(4);
     queue.write_texture(
         TexelCopyTextureInfo { texture, mip_level: 0, origin: Origin3d::ZERO, aspect: TextureAspect::All },
         texels,
-        TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(width * texel), rows_per_image: Some(height) },
-        Extent3d { width, height, depth_or_array_layers: layers },
+        TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(width * texel), rows_per_image: None },
+        Extent3d { width, height, depth_or_array_layers: 1 },
     );
 }
 
@@ -192,30 +190,30 @@ fn buffer(device: &Device, usage: BufferUsages, size: u64) -> Buffer {
 }
 
 fn list(device: &Device, format: TextureFormat, rows: u32) -> TextureView {
-    let size = Extent3d { width: ROW as u32, height: rows, depth_or_array_layers: 1 };
-    let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
-    texture(device, "tile lists", format, size, usage).create_view(&TextureViewDescriptor::default())
+    texture(device, "tile lists", format, [ROW as u32, rows], TextureUsages::COPY_DST)
 }
 
-fn shadowed(device: &Device, [width, height, layers]: [u32; 3]) -> TextureView {
-    let size = Extent3d { width, height, depth_or_array_layers: layers };
-    let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING | TextureUsages::COPY_DST;
-    let texture = texture(device, "tile verdicts", TextureFormat::R32Uint, size, usage);
-    texture.create_view(&TextureViewDescriptor {
-        dimension: Some(TextureViewDimension::D2Array),
-        ..TextureViewDescriptor::default()
-    })
+fn shadowed(device: &Device, size: [u32; 2]) -> TextureView {
+    let usage = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_DST;
+    texture(device, "tile verdicts", TextureFormat::R32Uint, size, usage)
 }
 
-fn texture(device: &Device, label: &str, format: TextureFormat, size: Extent3d, usage: TextureUsages) -> Texture {
-    device.create_texture(&TextureDescriptor {
+fn texture(
+    device: &Device,
+    label: &str,
+    format: TextureFormat,
+    [width, height]: [u32; 2],
+    usage: TextureUsages,
+) -> TextureView {
+    let texture = device.create_texture(&TextureDescriptor {
         label: Some(label),
-        size,
+        size: Extent3d { width, height, depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: 1,
         dimension: TextureDimension::D2,
         format,
-        usage,
+        usage: usage | TextureUsages::TEXTURE_BINDING,
         view_formats: &[],
-    })
+    });
+    texture.create_view(&TextureViewDescriptor::default())
 }

@@ -12,8 +12,8 @@ struct Group {
     // Where its entries begin and how many each tile has.
     first: u32,
     length: u32,
-    // Layer of `shadowed`.
-    light: u32,
+    // Where its light begins in `shadowed`.
+    row: u32,
     // Count at the near plane.
     base: i32,
 }
@@ -30,8 +30,8 @@ struct Group {
 // to infinity (inside where the first is not negative and the second is), and the depth. The fourth texel is the weight.
 @group(0) @binding(4) var quads: texture_2d<f32>;
 @group(0) @binding(5) var depth: texture_2d<f32>;
-// One bit a pixel, four columns of eight a texel.
-@group(0) @binding(6) var shadowed: texture_storage_2d_array<r32uint, write>;
+// One bit a pixel, four columns of eight a texel; one light below the other.
+@group(0) @binding(6) var shadowed: texture_storage_2d<r32uint, write>;
 
 fn depths(x: u32, y: u32) -> vec4<f32> {
     let last = image.size - 1u;
@@ -149,6 +149,6 @@ fn count(
         for (var i = 0u; i < 8u; i++) {
             word |= bits(n[half * 8u + i]) << (4u * i);
         }
-        textureStore(shadowed, vec2(tile.x * 2u + half, tile.y), group.light, vec4(word, 0u, 0u, 0u));
+        textureStore(shadowed, vec2(tile.x * 2u + half, group.row + tile.y), vec4(word, 0u, 0u, 0u));
     }
 }

@@ -54,6 +54,8 @@ pub struct TilePass {
 #[derive(Debug)]
 struct Light {
     base: i32,
+    /// Where it begins among all lights' rows of tiles.
+    row: u32,
     /// Pixels that can be in shadow.
     scissor: Rectangle,
 }
@@ -165,8 +167,9 @@ impl TilePass {
         }
         self.found.clear();
         self.bins.append(&mut self.entries, &mut self.found, &mut self.places);
-        let light = self.lights.len() as u32;
-        if !buffers::fit(&device.limits(), self.quads.len(), self.entries.len(), self.lights.len() + 1) {
+        let rows = self.size[1].div_ceil(TILE);
+        let row = self.lights.len() as u32 * rows;
+        if !buffers::fit(&device.limits(), self.quads.len(), self.entries.len(), (row + rows) as usize) {
             self.quads.truncate(before.0);
             self.entries.truncate(before.1);
             self.places.truncate(before.2);
@@ -175,12 +178,12 @@ impl TilePass {
         self.groups.extend(self.found.iter().map(|&bins::Group { first, length }| GroupRecord {
             first,
             length,
-            light,
+            row,
             base,
         }));
         let places = &self.places[before.2..];
         let scissor = if base == 0 { around(places, self.size) } else { [0, 0, self.size[0], self.size[1]] };
-        self.lights.push(Light { base, scissor });
+        self.lights.push(Light { base, row, scissor });
         let tiles = places.iter().filter(|&&place| place != bins::NO_TILE).count();
         Some(TileStats { quads: self.quads.len() - before.0, pairs, tiles })
     }
@@ -226,11 +229,13 @@ impl TilePass {
     ///
     /// Sets pipeline, bind group 0, stencil reference and scissor.
     pub fn draw(&self, pass: &mut RenderPass<'_>, pipeline: &VerdictPipeline, light: usize) {
-        let (Some(Light { scissor, .. }), Some(bindings)) = (self.lights.get(light), &self.verdicts) else { return };
-        let [x, y, width, height] = *scissor;
+        let (Some(&Light { row, scissor, .. }), Some(bindings)) = (self.lights.get(light), &self.verdicts) else {
+            return;
+        };
+        let [x, y, width, height] = scissor;
         if width > 0 && height > 0 {
             pass.set_scissor_rect(x, y, width, height);
-            pipeline.draw(pass, bindings, light as u32);
+            pipeline.draw(pass, bindings, row);
         }
     }
 }
@@ -248,12 +253,8 @@ fn around(places: &[u32], size: [u32; 2]) -> Rectangle {
     [x, y, (hi[0] * TILE).min(size[0]) - x, (hi[1] * TILE).min(size[1]) - y]
 }
 
-fn sampled(
-    binding: u32,
-    visibility: ShaderStages,
-    sample_type: TextureSampleType,
-    view_dimension: TextureViewDimension,
-) -> BindGroupLayoutEntry {
+fn sampled(binding: u32, visibility: ShaderStages, sample_type: TextureSampleType) -> BindGroupLayoutEntry {
+    let view_dimension = TextureViewDimension::D2;
     let ty = BindingType::Texture { sample_type, view_dimension, multisampled: false };
     BindGroupLayoutEntry { binding, visibility, ty, count: None }
 }
@@ -266,7 +267,7 @@ fn count_layout(device: &Device) -> BindGroupLayout {
         count: None,
     };
     let list = BufferBindingType::Storage { read_only: true };
-    let texture = |binding, sample_type| sampled(binding, ShaderStages::COMPUTE, sample_type, TextureViewDimension::D2);
+    let texture = |binding, sample_type| sampled(binding, ShaderStages::COMPUTE, sample_type);
     device.create_bind_group_layout(&BindGroupLayoutDescriptor {
         label: Some("tile counts"),
         entries: &[
@@ -283,7 +284,7 @@ fn count_layout(device: &Device) -> BindGroupLayout {
                 ty: BindingType::StorageTexture {
                     access: StorageTextureAccess::WriteOnly,
                     format: TextureFormat::R32Uint,
-                    view_dimension: TextureViewDimension::D2Array,
+                    view_dimension: TextureViewDimension::D2,
                 },
                 count: None,
             },

@@ -123,7 +123,7 @@ impl Sight {
         let [first, second] = if front { [to_a, to_b] } else { [to_b, to_a] };
         // On the quad's plane z is linear in x, y and w, so z/w is linear in x/w and y/w.
         let depth = (across * a.clip.z + xa.cross(pa) * b.clip.z + pa.cross(pb) * a.far.z) / det;
-        let functions = [self.unit(edge), first, second, self.to_pixels(depth)].map(DVec3::as_vec3);
+        let functions = [self.unit(edge), first, second, self.in_pixels(depth)].map(DVec3::as_vec3);
         functions.iter().all(|f| f.is_finite()).then(|| Quad {
             across: functions.map(|f| f.x),
             down: functions.map(|f| f.y),
@@ -142,19 +142,19 @@ impl Sight {
     }
 
     /// A function of `(x, y, 1)` in normalised device coordinates as one of pixels from the middle of the image, y down.
-    fn to_pixels(&self, f: DVec3) -> DVec3 {
+    fn in_pixels(&self, f: DVec3) -> DVec3 {
         DVec3::new(f.x * 2.0 / self.size.x, f.y * -2.0 / self.size.y, f.z)
     }
 
     /// The same for a function of which only the sign matters: a distance in pixels.
     fn unit(&self, f: DVec3) -> DVec3 {
-        let f = self.to_pixels(f);
+        let f = self.in_pixels(f);
         // Far off the image the gradient may vanish beside the constant.
         f / f.x.hypot(f.y).max(1e-12 * f.z.abs())
     }
 
-    /// The part of the quad before the near plane's far side and within one plane of the bounds: a quad is convex, so
-    /// that the rest cannot be in sight. `None` if there is nothing left.
+    /// The part of the quad beyond the near plane and on the inner side of one plane of the bounds, the one that leaves
+    /// least: what lies beyond that plane is never before something visible. `None` if there is nothing left.
     fn footprint(&self, a: &Corner, b: &Corner) -> Option<Footprint> {
         let both = |i: usize| a.exits[i].max(b.exits[i]);
         let exit = (0..6).min_by(|&i, &j| both(i).total_cmp(&both(j)))?;

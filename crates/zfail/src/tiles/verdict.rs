@@ -7,7 +7,7 @@ use wgpu::{
     BindGroup, BindGroupLayout, BindGroupLayoutDescriptor, ColorTargetState, ColorWrites, CompareFunction,
     DepthBiasState, DepthStencilState, Device, FragmentState, MultisampleState, PipelineCompilationOptions,
     PipelineLayoutDescriptor, PrimitiveState, RenderPass, RenderPipeline, RenderPipelineDescriptor, ShaderStages,
-    StencilFaceState, StencilOperation, StencilState, TextureSampleType, TextureViewDimension, VertexState,
+    StencilFaceState, StencilOperation, StencilState, TextureSampleType, VertexState,
 };
 
 /// What the stencil holds where the tile pass finds shadow.
@@ -19,10 +19,9 @@ pub struct VerdictPipeline(RenderPipeline);
 
 /// What `verdict.wgsl` binds.
 pub(super) fn layout(device: &Device) -> BindGroupLayout {
-    let bits = (TextureSampleType::Uint, TextureViewDimension::D2Array);
     device.create_bind_group_layout(&BindGroupLayoutDescriptor {
         label: Some("tile verdict"),
-        entries: &[super::sampled(0, ShaderStages::FRAGMENT, bits.0, bits.1)],
+        entries: &[super::sampled(0, ShaderStages::FRAGMENT, TextureSampleType::Uint)],
     })
 }
 
@@ -72,11 +71,11 @@ impl VerdictPipeline {
         })))
     }
 
-    /// Marks the pixels in the shadow of the tile pass's `light`.
-    pub(super) fn draw(&self, pass: &mut RenderPass<'_>, bindings: &BindGroup, light: u32) {
+    /// Marks the pixels in shadow, their light's bits beginning in `row`.
+    pub(super) fn draw(&self, pass: &mut RenderPass<'_>, bindings: &BindGroup, row: u32) {
         pass.set_pipeline(&self.0);
         pass.set_bind_group(0, bindings, &[]);
         pass.set_stencil_reference(SHADOWED);
-        pass.draw(0..3, light..light + 1);
+        pass.draw(0..3, row..row + 1);
     }
 }
