@@ -26,6 +26,7 @@ pub fn run(args: &args::Render) -> Result<(), Error> {
         shadows: !args.no_shadows,
         lights: Some(lights.clone()),
         exposure: args.exposure,
+        ..Settings::default()
     };
 
     let progress = console::progress(4, args.verbosity.quiet || args.aovs.is_empty());

@@ -1,7 +1,8 @@
 //! The graphics device: in, what kind of adapter is wanted; out, a device and queue with the features that shadows use.
 
 use crate::RenderError;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use zfail::CostModel;
 
 /// Which adapter to use.
 #[derive(Clone, Debug)]
@@ -36,11 +37,18 @@ pub struct Gpu {
     pub(crate) timestamps: bool,
     /// Whether draws within a pass can be timed.
     pub(crate) timestamps_inside: bool,
+    /// What counting costs here, once it has been measured.
+    costs: OnceLock<CostModel>,
     /// The first error that the device reported since it was last asked.
     failure: Arc<Mutex<Option<String>>>,
 }
 
 impl Gpu {
+    /// What rasterising and tiles cost on this device; measured at the first call, some tens of milliseconds.
+    pub(crate) fn costs(&self) -> CostModel {
+        *self.costs.get_or_init(|| CostModel::calibrate(&self.device, &self.queue))
+    }
+
     /// Opens the best adapter that `options` allows.
     ///
     /// # Errors
@@ -106,6 +114,7 @@ impl Gpu {
             device,
             queue,
             info,
+            costs: OnceLock::new(),
             failure,
         })
     }

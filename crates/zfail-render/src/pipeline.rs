@@ -107,6 +107,14 @@ pub fn cleared_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAt
     }
 }
 
+/// The attachment of a pass that keeps the depth that is there, with a stencil of 0.
+pub fn continued_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    wgpu::RenderPassDepthStencilAttachment {
+        depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store }),
+        ..cleared_depth(view)
+    }
+}
+
 /// A colour attachment that continues what `view` holds.
 pub fn continued(view: &wgpu::TextureView) -> Option<wgpu::RenderPassColorAttachment<'_>> {
     attachment(view, wgpu::LoadOp::Load)

@@ -149,6 +149,10 @@ impl<'g> Renderer<'g> {
         } else {
             vec![unplanned(view); chosen.len()]
         };
+        let readable = self.targets.as_ref().is_some_and(|targets| targets.depth.is_some());
+        if settings.shadows && readable {
+            self.scene.plan_tiles(gpu, settings)?;
+        }
         let planning_ms = start.elapsed().as_secs_f64() * 1e3;
 
         self.scene.arrange(view);
@@ -239,8 +243,12 @@ impl<'g> Renderer<'g> {
                 scissor: Some(figures[light].scissor).filter(|_| figures[light].has_shadow()),
                 span: spans.light(light),
             });
+            let depth = targets.depth.clone().filter(|_| shadows.counts_tiles());
+            let tiles = depth.as_ref().map(|depth| (&gpu.device, depth));
             let verdict_view = &targets.verdicts(gpu, layouts).view;
-            pass.encode(&mut encoder, [verdict_view, &depth_stencil], &self.frame, scene, verdicts, (timer, Some(0)));
+            let timer = (timer, Some(0));
+            let targets = [verdict_view, &depth_stencil];
+            pass.encode(&mut encoder, targets, &self.frame, scene, verdicts, tiles, timer);
         }
 
         let solid = scene.draws.solid.iter().filter(|_| part.solid);
@@ -313,11 +321,14 @@ impl<'g> Renderer<'g> {
             if settings.shadows {
                 let kinds: Vec<LightKind> = chosen.iter().map(|&l| self.scene.lights[l].kind).collect();
                 self.scene.plan(gpu, view, &chosen, &kinds, settings, counting)?;
+                if targets.stored_depth.is_some() {
+                    self.scene.plan_tiles(gpu, settings)?;
+                }
             }
             for light in 0..chosen.len() {
                 let mut encoder = encoder();
                 if settings.shadows {
-                    shadow.encode(&mut encoder, targets, &self.scene.shadows, light);
+                    shadow.encode(&mut encoder, targets, &self.scene.shadows, light, &gpu.device);
                 }
                 images.push(mask.read(gpu, encoder, targets, &self.frame, light as u32, what)?);
             }

@@ -4,7 +4,7 @@ use crate::draw_list::DrawList;
 use crate::geometry::MeshBuffers;
 use crate::layouts::Layouts;
 use crate::{Gpu, RenderError, Settings, check, materials};
-use zfail::{Caster, Counting, Frame, LightStats, ShadowLight, Shadows};
+use zfail::{Caster, Counting, Frame, LightStats, ShadowLight, Shadows, Tiles};
 use zfail_plan::scene::{Bounds, Instance, Light, LightKind, Material, Mesh, Pose, Scene};
 use zfail_plan::view::View;
 
@@ -155,10 +155,19 @@ impl SceneOnGpu {
             .collect();
         let lights: Vec<ShadowLight<'_>> =
             kinds.iter().zip(&excluded).map(|(&kind, excluded)| ShadowLight { kind, excluded }).collect();
-        let (measures, receivers) = (settings.technique.measures(), &[self.bounds]);
+        let (measures, receivers) = (settings.measures(), &[self.bounds]);
         let frame = Frame { view, casters: &self.casters, lights: &lights, receivers, measures, counting };
         self.shadows.prepare(&gpu.device, &gpu.queue, &frame)?;
         Ok((0..chosen.len()).map(|light| self.shadows.stats(light)).collect())
+    }
+
+    /// Chooses what of the planned frame is counted by tiles.
+    pub fn plan_tiles(&mut self, gpu: &Gpu, settings: &Settings) -> Result<(), RenderError> {
+        if settings.measures().tiles == Tiles::WhereCheaper {
+            self.shadows.set_cost_model(gpu.costs());
+        }
+        self.shadows.prepare_tiles(&gpu.device, &gpu.queue)?;
+        Ok(())
     }
 }
 

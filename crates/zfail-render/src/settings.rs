@@ -1,12 +1,14 @@
 //! How a frame is rendered: the caller's choices, apart from scene and view.
 
-use zfail::Technique;
+use zfail::{Measures, Technique, Tiles};
 
 /// Choices for one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// The shadow-volume method.
     pub technique: Technique,
+    /// When a technique that counts by tiles does so. Pictures of several samples are always rasterised.
+    pub tiles: Tiles,
     /// Samples per pixel: 1 or 4. Every sample has a shadow verdict of its own.
     pub samples: u32,
     /// Whether anything casts shadows.
@@ -19,7 +21,22 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { technique: Technique::Auto, samples: 1, shadows: true, lights: None, exposure: Exposure::Auto }
+        Self {
+            technique: Technique::Auto,
+            tiles: Tiles::WhereCheaper,
+            samples: 1,
+            shadows: true,
+            lights: None,
+            exposure: Exposure::Auto,
+        }
+    }
+}
+
+impl Settings {
+    /// The steps that the technique takes under these settings.
+    pub(crate) fn measures(&self) -> Measures {
+        let measures = self.technique.measures();
+        Measures { tiles: if measures.tiles == Tiles::Never { Tiles::Never } else { self.tiles }, ..measures }
     }
 }
 

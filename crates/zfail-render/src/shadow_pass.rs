@@ -15,14 +15,19 @@ impl ShadowPass {
         Self { pipelines: shadows.pipelines(&gpu.device, &target) }
     }
 
-    /// Clears the stencil and counts the volumes of light `light` of the frame that `shadows` has prepared.
+    /// Clears the stencil and counts the volumes of light `light` of the frame that `shadows` has prepared; with the first
+    /// one, all that are counted by tiles.
     pub fn encode(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         targets: &Attributes,
         shadows: &zfail::Shadows,
         light: usize,
+        device: &wgpu::Device,
     ) {
+        if let Some(depth) = targets.stored_depth.as_ref().filter(|_| light == 0) {
+            shadows.count_tiles(device, encoder, depth);
+        }
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadow"),
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {

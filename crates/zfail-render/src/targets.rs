@@ -36,6 +36,8 @@ pub struct Targets {
     pub size: [u32; 2],
     pub samples: u32,
     pub depth_stencil: wgpu::TextureView,
+    /// Its depth, for reading; `None` where that is not possible.
+    pub depth: Option<wgpu::TextureView>,
     /// The picture, single-sampled.
     pub ldr: wgpu::Texture,
     pub ldr_view: wgpu::TextureView,
@@ -66,10 +68,12 @@ impl Targets {
     pub fn new(gpu: &Gpu, size: [u32; 2], samples: u32) -> Result<Self, RenderError> {
         check_size(size, samples, gpu.device.limits().max_texture_dimension_2d)?;
         let ldr = create(gpu, "picture", LDR, size, 1);
+        let depth_stencil = create(gpu, "depth-stencil", gpu.depth_stencil, size, samples);
         Ok(Self {
             size,
             samples,
-            depth_stencil: view(&create(gpu, "depth-stencil", gpu.depth_stencil, size, samples)),
+            depth: depth_view(gpu, &depth_stencil),
+            depth_stencil: view(&depth_stencil),
             ldr_view: view(&ldr),
             ldr,
             hdr: None,
@@ -107,6 +111,8 @@ pub struct Attributes {
     pub normal: wgpu::Texture,
     pub albedo: wgpu::Texture,
     pub depth_stencil: wgpu::TextureView,
+    /// Depth as the tile pass reads it; `None` where that is not possible.
+    pub stored_depth: Option<wgpu::TextureView>,
     /// The distance for reading.
     pub bind_group: wgpu::BindGroup,
 }
@@ -116,6 +122,7 @@ impl Attributes {
     pub fn new(gpu: &Gpu, layouts: &Layouts, size: [u32; 2]) -> Result<Self, RenderError> {
         check_size(size, 1, gpu.device.limits().max_texture_dimension_2d)?;
         let depth = create(gpu, "depth", DEPTH, size, 1);
+        let depth_stencil = create(gpu, "depth-stencil", gpu.depth_stencil, size, 1);
         let resources = [wgpu::BindingResource::TextureView(&view(&depth))];
         Ok(Self {
             size,
@@ -123,7 +130,8 @@ impl Attributes {
             depth,
             normal: create(gpu, "normal", NORMAL, size, 1),
             albedo: create(gpu, "albedo", ALBEDO, size, 1),
-            depth_stencil: view(&create(gpu, "depth-stencil", gpu.depth_stencil, size, 1)),
+            stored_depth: depth_view(gpu, &depth_stencil),
+            depth_stencil: view(&depth_stencil),
         })
     }
 }
@@ -135,6 +143,8 @@ fn create(gpu: &Gpu, label: &str, format: wgpu::TextureFormat, size: [u32; 2], s
         if samples == 1 {
             usage |= wgpu::TextureUsages::COPY_SRC;
         }
+    } else if has_readable_depth(gpu, samples) {
+        usage |= wgpu::TextureUsages::TEXTURE_BINDING;
     }
     gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
@@ -145,6 +155,21 @@ fn create(gpu: &Gpu, label: &str, format: wgpu::TextureFormat, size: [u32; 2], s
         format,
         usage,
         view_formats: &[],
+    })
+}
+
+/// Whether shaders may fetch from the depth buffer: some GL drivers fail there, and samples are not told apart.
+fn has_readable_depth(gpu: &Gpu, samples: u32) -> bool {
+    samples == 1 && gpu.info.backend != wgpu::Backend::Gl
+}
+
+/// The depth aspect of a depth-stencil texture.
+fn depth_view(gpu: &Gpu, texture: &wgpu::Texture) -> Option<wgpu::TextureView> {
+    has_readable_depth(gpu, texture.sample_count()).then(|| {
+        texture.create_view(&wgpu::TextureViewDescriptor {
+            aspect: wgpu::TextureAspect::DepthOnly,
+            ..wgpu::TextureViewDescriptor::default()
+        })
     })
 }
 

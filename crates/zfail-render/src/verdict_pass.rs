@@ -5,7 +5,7 @@ use crate::draw_list::{Alpha, Draw, Look};
 use crate::frame::FrameData;
 use crate::geometry::Vertices;
 use crate::layouts::Layouts;
-use crate::pipeline::{ADD, Recipe, cleared, cleared_depth, depth_test};
+use crate::pipeline::{ADD, Recipe, cleared, cleared_depth, continued, continued_depth, depth_test};
 use crate::scene::SceneOnGpu;
 use crate::targets::VERDICTS;
 use crate::timing::Timer;
@@ -82,7 +82,8 @@ impl VerdictPass {
         }
     }
 
-    /// Fills verdicts, the first light's in the lowest bit of red, and depth; `timer` comes with the span of the pass.
+    /// Fills depth and verdicts, the first light's in the lowest bit of red. With `tiles`, the device and the depth for
+    /// reading, lights that the tile pass counts are counted there. `timer` comes with the span of the pass.
     pub fn encode(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -90,13 +91,19 @@ impl VerdictPass {
         frame: &FrameData,
         scene: &SceneOnGpu,
         lights: impl Iterator<Item = Verdict>,
+        tiles: Option<(&wgpu::Device, &wgpu::TextureView)>,
         timer: (&Timer, Option<usize>),
     ) {
+        let timestamps = timer.1.and_then(|span| timer.0.pass(span));
+        let (begin, end) = (timestamps.clone(), timestamps.clone());
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("verdicts"),
             color_attachments: &[cleared(verdicts, [0.0; 4])],
             depth_stencil_attachment: Some(cleared_depth(depth_stencil)),
-            timestamp_writes: timer.1.and_then(|span| timer.0.pass(span)),
+            timestamp_writes: match tiles {
+                None => timestamps,
+                Some(_) => begin.map(|t| wgpu::RenderPassTimestampWrites { end_of_pass_write_index: None, ..t }),
+            },
             ..Default::default()
         });
         pass.set_bind_group(0, &frame.bind_group, &[]);
@@ -111,6 +118,20 @@ impl VerdictPass {
                 pass.set_bind_group(1, &scene.materials[part.material], &[]);
             }
             pass.draw_indexed(part.indices.clone(), 0, draw.slots.clone());
+        }
+        if let Some((device, depth)) = tiles {
+            // The tile pass reads depth, so the render pass is interrupted for it.
+            drop(pass);
+            scene.shadows.count_tiles(device, encoder, depth);
+            pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("verdicts"),
+                color_attachments: &[continued(verdicts)],
+                depth_stencil_attachment: Some(continued_depth(depth_stencil)),
+                timestamp_writes: end
+                    .map(|t| wgpu::RenderPassTimestampWrites { beginning_of_pass_write_index: None, ..t }),
+                ..Default::default()
+            });
+            pass.set_bind_group(0, &frame.bind_group, &[]);
         }
         for (bit, light) in lights.take(LIGHTS).enumerate() {
             if let Some(span) = light.span {

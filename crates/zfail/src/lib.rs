@@ -19,19 +19,23 @@
 //!   faster where the device has `DEPTH_CLIP_CONTROL`: [`wanted_features`].
 
 mod arena;
+mod cost;
 mod error;
 mod features;
 mod frame_buffers;
 mod pipelines;
 mod shadows;
+mod tiled;
 pub mod tiles;
 
+pub use cost::CostModel;
 pub use error::Error;
 pub use features::{depth_stencil_format, wanted_features};
 pub use pipelines::{Pipelines, Target, lit_stencil};
 pub use shadows::{Caster, Frame, MeshId, Shadows};
 pub use zfail_plan::plan::{
-    Counting, Culled, FramePlan, LightStats, Measures, ShadowLight, Technique, Triangles, UnknownTechnique, ZPass,
+    Counting, Culled, FramePlan, LightStats, Measures, ShadowLight, Technique, Tiles, Triangles, UnknownTechnique,
+    ZPass,
 };
 pub use zfail_plan::scene::{Bounds, LightKind};
 pub use zfail_plan::topology::{Surface, Topology, TopologyError};

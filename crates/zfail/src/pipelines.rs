@@ -8,6 +8,7 @@
 //! told apart in one draw (E&K 2002, section 4.1, "two-sided stencil testing"). z-pass (Heidmann 1991) does the opposite
 //! where a face lies in front of the visible surface. Both test depth strictly: what coincides with the surface is behind.
 
+use crate::tiles::VerdictPipeline;
 use wgpu::{
     BindGroupLayout, ColorTargetState, ColorWrites, CompareFunction, DepthStencilState, Device, Features,
     FragmentState, FrontFace, MultisampleState, PipelineCompilationOptions, PipelineLayoutDescriptor, PrimitiveState,
@@ -50,6 +51,8 @@ pub struct Pipelines {
     /// Sets every count to the reference.
     pub(crate) start: RenderPipeline,
     pub(crate) fold: RenderPipeline,
+    /// Brings the tile pass's verdicts in; none for multisampled targets.
+    pub(crate) tiles: Option<VerdictPipeline>,
 }
 
 /// Pipelines that differ in winding and counting, by `[batched][clockwise]`.
@@ -81,6 +84,7 @@ impl Pipelines {
             },
             start: maker.start(),
             fold: maker.fold(),
+            tiles: VerdictPipeline::new(device, target),
         }
     }
 

@@ -1,16 +1,20 @@
 //! Shadow determination for a host renderer: meshes in, stencil verdict out.
 
 use crate::arena::Arena;
+use crate::cost::CostModel;
 use crate::error::Error;
 use crate::frame_buffers::FrameBuffers;
 use crate::pipelines::{Pipelines, STICKY, Target, Variant};
+use crate::tiled::{Prepared, Tiled, TiledLight, can_tile};
+use crate::tiles::TileStats;
 use glam::DAffine3;
 use std::ops::Range;
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry,
-    BindingType, BufferBindingType, Device, IndexFormat, Queue, RenderPass, RenderPipeline, ShaderModule, ShaderStages,
+    BindingType, BufferBindingType, CommandEncoder, Device, IndexFormat, Queue, RenderPass, RenderPipeline,
+    ShaderModule, ShaderStages, TextureView,
 };
-use zfail_plan::plan::{self, Counting, Draw, FramePlan, LightStats, Measures, Planner, ShadowLight};
+use zfail_plan::plan::{self, Counting, Draw, FramePlan, LightStats, Measures, Planner, ShadowLight, Tiles};
 use zfail_plan::scene::Bounds;
 use zfail_plan::scissor::Rectangle;
 use zfail_plan::topology::{Surface, Topology};
@@ -19,8 +23,8 @@ use zfail_plan::view::View;
 /// A mesh registered with one [`Shadows`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MeshId {
-    slot: usize,
-    serial: u64,
+    pub(crate) slot: usize,
+    pub(crate) serial: u64,
 }
 
 /// A mesh placed in the world that blocks light.
@@ -63,6 +67,11 @@ pub struct Shadows {
     first_positions: Vec<u32>,
     finite: bool,
     image: Rectangle,
+    prepared: Option<Prepared>,
+    tiled: Option<Tiled>,
+    /// Whether `tiled` belongs to the prepared frame.
+    counted: bool,
+    costs: CostModel,
 }
 
 impl Shadows {
@@ -97,6 +106,10 @@ impl Shadows {
             first_positions: Vec::new(),
             finite: false,
             image: [0; 4],
+            prepared: None,
+            tiled: None,
+            counted: false,
+            costs: CostModel::RASTERISE,
         }
     }
 
@@ -147,11 +160,60 @@ impl Shadows {
     /// A caster without a registered mesh or with a singular transform, or volumes too large for the device's buffers.
     /// Nothing is drawn then.
     pub fn prepare(&mut self, device: &Device, queue: &Queue, frame: &Frame<'_>) -> Result<(), Error> {
+        self.counted = false;
         let outcome = self.plan_and_upload(device, queue, frame);
         if outcome.is_err() {
             self.planner = Planner::new();
+            self.prepared = None;
         }
         outcome
+    }
+
+    /// What the device's times are: [`Measures::tiles`] is decided by them. Without it every volume is rasterised.
+    pub fn set_cost_model(&mut self, costs: CostModel) {
+        self.costs = costs;
+    }
+
+    /// Chooses the lights whose sides a compute pass is to count, where that costs less than rasterising them. Optional,
+    /// and exact either way. Call it after [`Self::prepare`]; if it returns `true`, [`Self::count_tiles`] has to be
+    /// encoded before the frame's [`Self::draw`]s, and these have to go to targets with one sample.
+    ///
+    /// # Errors
+    /// Lists that are too large for the device's buffers. All volumes are rasterised then.
+    pub fn prepare_tiles(&mut self, device: &Device, queue: &Queue) -> Result<bool, Error> {
+        self.counted = false;
+        let Some(prepared) = self.prepared.as_ref().filter(|p| p.measures.tiles != Tiles::Never) else {
+            return Ok(false);
+        };
+        let tiled = self.tiled.get_or_insert_with(|| Tiled::new(device));
+        self.counted = tiled.choose(device, queue, prepared, self.planner.last(), &self.arena, self.costs)?;
+        Ok(self.counted)
+    }
+
+    /// Encodes the compute pass that [`Self::prepare_tiles`] has prepared, if any: after the pass that finishes the depth of
+    /// the view. `depth` is a view of the depth aspect alone, of a texture with one sample and the usage
+    /// `TEXTURE_BINDING`.
+    pub fn count_tiles(&self, device: &Device, encoder: &mut CommandEncoder, depth: &TextureView) {
+        if let Some(tiled) = self.tiled.as_ref().filter(|_| self.counted) {
+            tiled.pass.encode(device, encoder, depth);
+        }
+    }
+
+    /// Whether [`Self::count_tiles`] has something to encode for the prepared frame.
+    #[must_use]
+    pub fn counts_tiles(&self) -> bool {
+        self.counted
+    }
+
+    /// Figures of the tile pass for one light of the prepared frame, if it takes part.
+    #[must_use]
+    pub fn tile_stats(&self, light: usize) -> Option<TileStats> {
+        self.tiled_light(light).map(|tiled| tiled.stats)
+    }
+
+    fn tiled_light(&self, light: usize) -> Option<TiledLight> {
+        let tiled = self.tiled.as_ref().filter(|_| self.counted)?;
+        tiled.lights.get(light).copied().flatten()
     }
 
     fn plan_and_upload(&mut self, device: &Device, queue: &Queue, frame: &Frame<'_>) -> Result<(), Error> {
@@ -180,6 +242,16 @@ impl Shadows {
         if moved {
             self.bindings = bind(device, &self.layout, &self.arena, &self.buffers);
         }
+        let mut visible = Bounds::EMPTY;
+        for receivers in frame.receivers.iter().filter(|bounds| !bounds.is_empty()) {
+            visible.add(receivers.min);
+            visible.add(receivers.max);
+        }
+        let mut kept = self.prepared.take().map(|prepared| prepared.casters).unwrap_or_default();
+        kept.clear();
+        kept.extend_from_slice(frame.casters);
+        let (measures, counting) = (frame.measures, frame.counting);
+        self.prepared = Some(Prepared { view: *frame.view, casters: kept, measures, counting, visible });
         self.finite = frame.view.is_finite();
         self.image = zfail_plan::scissor::full(frame.view);
         Ok(())
@@ -212,14 +284,21 @@ impl Shadows {
     /// Does nothing if the prepared frame has no such light, or the last [`Self::prepare`] failed.
     pub fn draw(&self, pass: &mut RenderPass<'_>, pipelines: &Pipelines, light: usize) {
         let plan = self.plan();
+        // Samples of multisampled targets are not told apart by tiles.
+        let tiled = self.tiled_light(light).and_then(|tiled| Some((tiled, pipelines.tiles.as_ref()?)));
         let Some(light) = plan.lights.get(light) else { return };
         let Some(scissor) = light.scissor.filter(|_| light.stats.has_shadow()) else { return };
         pass.set_bind_group(0, &self.bindings, &[]);
         pass.set_index_buffer(self.buffers.indices.slice(..), IndexFormat::Uint32);
         let last = light.batches.len().saturating_sub(1);
         let mut state = PassState { scissor: None, pipeline: None };
-        // Modulo 256, as all counting is.
-        let near_count = light.stats.near_count % 256;
+        let draws = || light.batches.iter().flat_map(|batch| &plan.draws[batch.start as usize..batch.end as usize]);
+        let rasterised = |draw: &Draw| tiled.is_none() || !can_tile(draw);
+        // Modulo 256, as all counting is. What the tile pass counts it starts itself.
+        let near_count = match tiled {
+            Some(_) => draws().filter(|draw| rasterised(draw)).map(|draw| draw.near_layers).sum(),
+            None => light.stats.near_count,
+        } % 256;
         if near_count > 0 {
             state.set_scissor(pass, scissor);
             state.set_pipeline(pass, &pipelines.start);
@@ -227,7 +306,7 @@ impl Shadows {
             pass.draw(0..3, 0..1);
         }
         for (i, batch) in light.batches.iter().enumerate() {
-            for d in batch.clone() {
+            for d in batch.clone().filter(|&d| rasterised(&plan.draws[d as usize])) {
                 self.draw_volume(pass, &mut state, pipelines, d, &plan.draws[d as usize], last > 0);
             }
             if i < last {
@@ -237,7 +316,13 @@ impl Shadows {
                 pass.draw(0..3, 0..1);
             }
         }
-        state.set_scissor(pass, self.image);
+        if let Some((light, pipeline)) = tiled
+            && let Some(tiled) = &self.tiled
+        {
+            tiled.pass.draw(pass, pipeline, light.index);
+        }
+        let [x, y, width, height] = self.image;
+        pass.set_scissor_rect(x, y, width, height);
     }
 
     fn draw_volume<'p>(

@@ -5,7 +5,7 @@ mod stage;
 
 use stage::{Setup, Soup, draw};
 use zfail::glam::{DAffine3, DMat3, DQuat, DVec3};
-use zfail::{Counting, FramePlan, LightKind, Measures, Projection, Technique, View, ZPass};
+use zfail::{Counting, FramePlan, LightKind, Measures, Projection, Technique, Tiles, View, ZPass};
 
 /// Small deterministic random numbers (splitmix64).
 struct Random(u64);
@@ -178,6 +178,26 @@ fn skipping_casters_changes_no_verdict() {
         dark += all.iter().filter(|&&s| s > 0).count();
     }
     assert!(culled > 30 && dark > 10_000, "{culled} casters culled, {dark} pixels in shadow");
+}
+
+/// Counting by tiles, a pixel may differ where its centre lies within the rasteriser's rounding of an edge, and nowhere else.
+#[test]
+fn tiles_give_the_verdicts_of_the_rasteriser() {
+    let Some(device) = device() else { return };
+    let (mut wrong, mut dark, mut all) = (0, 0, 0);
+    for seed in 0..SEEDS {
+        let truth = device.draw(seed, Technique::EverittKilgard.into(), Counting::Verdict, |_| {}).0;
+        let measures = Measures { tiles: Tiles::Always, ..Technique::Auto.measures() };
+        let image = device.draw(seed, measures, Counting::Verdict, |_| {}).0;
+        let differing = truth.iter().zip(&image).filter(|&(&a, &b)| (a == 0) != (b == 0)).count();
+        assert!(differing <= 4, "seed {seed}: {differing} verdicts differ");
+        wrong += differing;
+        all += image.len();
+        // Marks, not counts: the tile pass has been there.
+        dark += image.iter().filter(|&&s| s == 0x80).count();
+    }
+    println!("{wrong} of {all} verdicts differ, {dark} pixels darkened by tiles");
+    assert!(wrong * 20_000 < all && dark > 10_000, "{wrong} differ of {all}, {dark} pixels darkened by tiles");
 }
 
 /// Edits that must not go unnoticed, each with a name and the technique whose plan is edited.

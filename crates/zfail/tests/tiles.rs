@@ -1,13 +1,13 @@
 //! The tile pass against rasterised volumes: the same counts at every pixel, on random scenes.
 //!
-//! Counts are read through verdicts: with `n` taken from the count at the near plane, "lit" means a count of `n`. Pixels
-//! may differ only where the count changes within 1/16 pixel, for rasterisers round corners to parts of a pixel.
+//! Counts are read through verdicts: with `n` taken from the count at the near plane, "lit" means a count of `n`. Where
+//! they differ ray casting decides, within 1/16 pixel, for rasterisers round corners to parts of a pixel.
 
 mod stage;
 
 use stage::{Setup, Soup, stencil};
 use zfail::glam::{DAffine3, DMat3, DQuat, DVec3};
-use zfail::tiles::{Sides, TilePass};
+use zfail::tiles::{Sides, TilePass, VerdictPipeline};
 use zfail::zfail_plan::casting;
 use zfail::zfail_plan::plan::{self, Frame, Planner};
 use zfail::zfail_plan::scene::Bounds;
@@ -92,7 +92,7 @@ fn scene(seed: u64) -> Scene {
 
 /// What the rasterised volumes count, and the count at the near plane if it is the same everywhere.
 fn rasterised(scene: &Scene) -> Option<(Vec<u8>, Option<u8>)> {
-    let setup = Setup { counting: Counting::Raw, technique: Technique::EverittKilgard, ..Setup::default() };
+    let setup = Setup { counting: Counting::Raw, ..Setup::default() };
     let counts = stencil(&setup, &scene.view, &scene.meshes, scene.light)?;
     let at_near = Setup { depth_clear: 1.0, draw_depth: false, ..setup };
     let near = stencil(&at_near, &scene.view, &scene.meshes, scene.light)?;
@@ -127,7 +127,7 @@ fn tiled(scene: &Scene, near: u8, fault: Fault) -> Vec<u8> {
     let (technique, counting) = (Technique::EverittKilgard, Counting::Raw);
     let mut planner = Planner::new();
     let plan = planner
-        .plan(&Frame { view: &scene.view, casters: &casters, lights: &lights, technique, counting })
+        .plan(&Frame { view: &scene.view, casters: &casters, lights: &lights, receivers: &[], measures: technique.into(), counting })
         .expect("plan");
 
     let sides = plan.draws.iter().map(|draw| {
@@ -157,12 +157,12 @@ fn tiled(scene: &Scene, near: u8, fault: Fault) -> Vec<u8> {
     let mut pass = TilePass::new(&device);
     pass.begin(&scene.view, &visible);
     for level in 0..LEVELS as i32 {
-        pass.add(&device, i32::from(near) - level, sides.clone()).expect("a small light");
+        pass.add(&device, i32::from(near) - level, sides.clone(), |_| true).expect("a small light");
     }
     pass.upload(&device, &queue).expect("small lists");
 
     let target = Target { colors: &[], depth_stencil: setup.depth_stencil, samples: 1 };
-    let pipeline = pass.pipeline(&device, &target).expect("one sample");
+    let pipeline = VerdictPipeline::new(&device, &target).expect("one sample");
     let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: None,
         size: wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 },
@@ -198,7 +198,7 @@ fn tiled(scene: &Scene, near: u8, fault: Fault) -> Vec<u8> {
     let mut counts = vec![LEVELS as u8; (SIZE[0] * SIZE[1]) as usize];
     for level in 0..LEVELS {
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        pass.draw(&device, &mut begin(&mut encoder, wgpu::LoadOp::Load), &pipeline, level);
+        pass.draw(&mut begin(&mut encoder, wgpu::LoadOp::Load), &pipeline, level);
         let lit = stage::read_stencil(&device, &queue, encoder, &texture);
         for (count, _) in counts.iter_mut().zip(lit).filter(|(_, stencil)| *stencil == 0) {
             *count = level as u8;
@@ -235,9 +235,9 @@ impl<'a> Exact<'a> {
         Self { view: &scene.view, light: scene.light, triangles }
     }
 
-    /// The count at what is visible at a point of the image, in pixels.
-    fn count(&self, x: f64, y: f64) -> i32 {
-        let Projection::Perspective { yfov, .. } = self.view.projection else { return 0 };
+    /// Which triangle is visible at a point of the image, in pixels, and the count there.
+    fn count(&self, x: f64, y: f64) -> (usize, i32) {
+        let Projection::Perspective { yfov, .. } = self.view.projection else { panic!("a view with an eye") };
         let half = (0.5 * yfov).tan();
         let [width, height] = self.view.size.map(f64::from);
         let ray =
@@ -250,20 +250,21 @@ impl<'a> Exact<'a> {
         let light = self.light.homogeneous();
         let to_light = light.truncate() - point * light.w;
         let end = if light.w == 0.0 { f64::INFINITY } else { 1.0 };
+        let crossed = |corners| (0.0..end).contains(&hit(point, to_light, corners));
         let others = self.triangles.iter().enumerate().filter(|(t, _)| *t != seen);
-        others
-            .filter(|(_, (corners, _))| (0.0..end).contains(&hit(point, to_light, corners)))
-            .map(|(_, (_, n))| n)
-            .sum()
+        (seen, others.filter(|(_, (corners, _))| crossed(corners)).map(|(_, (_, n))| n).sum())
     }
 
-    /// Whether the count changes within the guard band around a pixel's centre, and is `n` somewhere there.
-    fn is_beside_an_edge(&self, [x, y]: [usize; 2], n: u8) -> bool {
+    /// Whether the count is `n` within the guard band around a pixel's centre, or the band holds a visible edge.
+    fn is_possible(&self, [x, y]: [usize; 2], n: u8) -> bool {
         let (x, y) = (x as f64 + 0.5, y as f64 + 0.5);
-        let around =
-            (0..16).flat_map(|k| [1.0 / 16.0, 1.0 / 64.0].map(|r| (f64::from(k) * std::f64::consts::TAU / 16.0, r)));
-        let counts: Vec<i32> = around.map(|(a, r)| self.count(x + r * a.cos(), y + r * a.sin())).collect();
-        counts.iter().any(|c| *c != counts[0]) && counts.iter().any(|c| (*c).clamp(0, LEVELS as i32) == i32::from(n))
+        let ring = |k: u32| f64::from(k) * std::f64::consts::TAU / 16.0;
+        let around = (0..16).map(ring).flat_map(|a| [1.0 / 64.0, 1.0 / 16.0].map(|r| [r * a.cos(), r * a.sin()]));
+        let middle = self.count(x, y);
+        around
+            .chain([[0.0; 2]])
+            .map(|[dx, dy]| self.count(x + dx, y + dy))
+            .any(|(seen, count)| seen != middle.0 || count.clamp(0, LEVELS as i32) == i32::from(n))
     }
 }
 
@@ -276,21 +277,21 @@ fn hit(from: DVec3, way: DVec3, [a, b, c]: &[DVec3; 3]) -> f64 {
     if along_u >= 0.0 && along_v >= 0.0 && along_u + along_v <= 1.0 { v.dot(q) / det } else { f64::NAN }
 }
 
-/// Pixels that differ: with no edge beside them, and within the guard band of one.
+/// Pixels at which tiles and rasteriser differ: where ray casting tells that the tiles are wrong, and all others.
 fn differences(scene: &Scene, rasterised: &[u8], tiled: &[u8]) -> [usize; 2] {
     let width = SIZE[0] as usize;
-    let level = |n: u8| if n < LEVELS as u8 { n } else { LEVELS as u8 };
+    let level = |n: u8| n.min(LEVELS as u8);
     let exact = Exact::new(scene);
-    let mut wrong = [0; 2];
+    let mut differences = [0; 2];
     for (i, (&a, &b)) in rasterised.iter().zip(tiled).enumerate().filter(|(_, (a, b))| level(**a) != **b).take(100) {
         let pixel = [i % width, i / width];
-        let edge = exact.is_beside_an_edge(pixel, b);
-        wrong[usize::from(edge)] += 1;
-        if !edge {
+        let possible = exact.is_possible(pixel, b);
+        differences[usize::from(possible)] += 1;
+        if !possible {
             println!("pixel {pixel:?}: {a} rasterised, {b} in tiles");
         }
     }
-    wrong
+    differences
 }
 
 /// Scenes whose near plane is within one count, with what the rasteriser makes of them.
@@ -307,18 +308,18 @@ fn tiles_count_what_the_rasteriser_counts() {
     if stage::device(&Setup::default()).is_none() {
         return;
     }
-    let (mut scenes, mut shadowed_eyes, mut beside) = (0, 0, 0);
-    for (seed, scene, counts, near) in countable(0..60) {
-        let [plain, edge] = differences(&scene, &counts, &tiled(&scene, near, Fault::None));
-        println!("seed {seed}: near count {near}, {edge} pixels differ beside an edge");
-        assert_eq!(plain, 0, "seed {seed}");
+    let (mut scenes, mut shadowed_eyes, mut guarded) = (0, 0, 0);
+    for (seed, scene, counts, near) in countable(0..30) {
+        let [wrong, others] = differences(&scene, &counts, &tiled(&scene, near, Fault::None));
+        println!("seed {seed}: near count {near}, {others} pixels within a guard band");
+        assert_eq!(wrong, 0, "seed {seed}");
         scenes += 1;
         shadowed_eyes += usize::from(near > 0);
-        beside += edge;
+        guarded += others;
     }
-    assert!(scenes >= 20 && shadowed_eyes >= 2, "{scenes} scenes, {shadowed_eyes} from within a shadow");
+    assert!(scenes >= 15 && shadowed_eyes >= 2, "{scenes} scenes, {shadowed_eyes} from within a shadow");
     let pixels = scenes * (SIZE[0] * SIZE[1]) as usize;
-    assert!(beside * 10_000 <= pixels, "{beside} of {pixels} pixels");
+    assert!(guarded * 100_000 <= pixels, "{guarded} of {pixels} pixels");
 }
 
 #[test]
@@ -338,9 +339,9 @@ fn what_cannot_be_tiled_is_refused() {
     let Some((device, _)) = stage::device(&Setup::default()) else { return };
     let mut pass = TilePass::new(&device);
     let target = Target { colors: &[], depth_stencil: wgpu::TextureFormat::Depth32FloatStencil8, samples: 4 };
-    assert!(pass.pipeline(&device, &target).is_none());
+    assert!(VerdictPipeline::new(&device, &target).is_none());
     let mut view = scene(0).view;
     view.projection = Projection::Orthographic { ymag: 1.0, near: 0.0, far: 1.0 };
     pass.begin(&view, &Bounds::of([DVec3::ZERO]));
-    assert_eq!(pass.add(&device, 0, []), None);
+    assert_eq!(pass.add(&device, 0, [], |_| true), None);
 }

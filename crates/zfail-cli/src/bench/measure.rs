@@ -1,8 +1,8 @@
 //! The clock around frames.
 //!
-//! In: a scene's frames and the variants to compare. Out: a sample per frame and variant. Each frame is rendered by
-//! every variant before the next one is, and each time another one begins, so that what drifts in the machine (clocks,
-//! caches, other programs) drifts for all alike.
+//! In: a scene's frames and the techniques to compare. Out: a sample per frame and technique, and one without shadows.
+//! Each frame is rendered in all ways before the next one is, and each time another way begins, so that what drifts in
+//! the machine (clocks, caches, other programs) drifts for all alike.
 
 use super::scenes::Course;
 use crate::error::Error;
@@ -13,30 +13,21 @@ use std::time::{Duration, Instant};
 use zfail_plan::scene::Pose;
 use zfail_render::{FrameStats, Gpu, RenderError, Renderer, Settings, Technique};
 
-/// Frames of every variant before the clock counts: pipelines are compiled, buffers have grown, caches are filled.
+/// Frames before the clock counts: pipelines are compiled, buffers have grown, caches are filled.
 const WARM_UP: usize = 2;
 
-/// What is compared.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Variant {
-    pub technique: Technique,
-    pub shadows: bool,
-}
-
-impl Variant {
-    /// Every technique with shadows and without; all techniques if `chosen` is empty.
-    pub fn all(chosen: &[Technique]) -> Vec<Self> {
-        let mut techniques: Vec<Technique> = Vec::new();
-        for &technique in if chosen.is_empty() { &Technique::ALL[..] } else { chosen } {
-            if !techniques.contains(&technique) {
-                techniques.push(technique);
-            }
+/// Each of `chosen` once, or all techniques if it is empty.
+pub fn techniques(chosen: &[Technique]) -> Vec<Technique> {
+    let mut techniques: Vec<Technique> = Vec::new();
+    for &technique in if chosen.is_empty() { &Technique::ALL[..] } else { chosen } {
+        if !techniques.contains(&technique) {
+            techniques.push(technique);
         }
-        techniques.iter().flat_map(|&technique| [true, false].map(|shadows| Self { technique, shadows })).collect()
     }
+    techniques
 }
 
-/// One frame of one variant.
+/// One frame, rendered in one way.
 pub struct Frame {
     /// User and system time of all threads of the process. On a software rasteriser this includes the rendering.
     pub cpu: Duration,
@@ -47,47 +38,45 @@ pub struct Frame {
 /// What all scenes are measured with.
 pub struct Setup<'a> {
     pub gpu: &'a Gpu,
-    pub variants: &'a [Variant],
+    pub techniques: &'a [Technique],
     pub samples: u32,
+}
+
+/// The frames of one scene.
+pub struct Samples {
+    /// With shadows, by technique.
+    pub on: Vec<Vec<Frame>>,
+    /// Without shadows, where techniques do not differ.
+    pub off: Vec<Frame>,
 }
 
 impl Setup<'_> {
     /// How many frames [`Self::play`] renders.
     pub fn frame_count(&self, course: &Course) -> usize {
-        (WARM_UP + course.frames.len()) * self.variants.len()
+        (WARM_UP + course.frames.len()) * (self.techniques.len() + 1)
     }
 
-    /// The frames of `course`, by variant.
-    pub fn play(&self, course: &Course, progress: &ProgressBar) -> Result<Vec<Vec<Frame>>, Error> {
-        let mut players: Vec<Player<'_>> = Vec::new();
-        for variant in self.variants {
-            // Planning reuses what it knows of the frame before, which must have been planned by the same technique.
-            if players.iter().all(|player| player.technique != variant.technique) {
-                players.push(Player::new(self.gpu, course, variant.technique).map_err(|e| failed(&e))?);
-            }
-        }
-        let mut samples: Vec<Vec<Frame>> = self.variants.iter().map(|_| Vec::new()).collect();
+    /// Renders every frame of `course` by every technique and without shadows.
+    ///
+    /// # Errors
+    /// If the renderer or the device fails.
+    pub fn play(&self, course: &Course, progress: &ProgressBar) -> Result<Samples, Error> {
+        let settings =
+            |technique, shadows| Settings { technique, shadows, samples: self.samples, ..Settings::default() };
+        let on = self.techniques.iter().map(|&technique| settings(technique, true));
+        let variants = on.chain([settings(Technique::default(), false)]);
+        let mut players: Vec<Player<'_>> =
+            variants.map(|settings| Player::new(self.gpu, course, settings)).collect::<Result<_, _>>()?;
+        let count = players.len();
         for (turn, k) in order(course.frames.len()).enumerate() {
-            for i in 0..self.variants.len() {
-                let v = (i + turn) % self.variants.len();
-                let variant = self.variants[v];
-                let Some(player) = players.iter_mut().find(|player| player.technique == variant.technique) else {
-                    continue;
-                };
-                let settings = Settings {
-                    technique: variant.technique,
-                    samples: self.samples,
-                    shadows: variant.shadows,
-                    ..Settings::default()
-                };
-                let frame = player.time(course, k, &settings).map_err(|e| failed(&e))?;
-                if turn >= WARM_UP {
-                    samples[v].push(frame);
-                }
+            for i in 0..count {
+                players[(i + turn) % count].play(course, k, turn >= WARM_UP)?;
                 progress.inc(1);
             }
         }
-        Ok(samples)
+        let mut on: Vec<Vec<Frame>> = players.into_iter().map(|player| player.samples).collect();
+        let off = on.pop().unwrap_or_default();
+        Ok(Samples { on, off })
     }
 }
 
@@ -97,25 +86,36 @@ fn order(count: usize) -> impl Iterator<Item = usize> {
     (0..WARM_UP).rev().map(move |before| last.saturating_sub(before)).chain(0..count)
 }
 
-/// A renderer that plays one scene by one technique.
+/// Plays one scene in one way. Each has a renderer of its own, because planning and uploads reuse what they know of the
+/// frame before.
 struct Player<'g> {
-    technique: Technique,
+    settings: Settings,
     renderer: Renderer<'g>,
     pose: Pose,
+    samples: Vec<Frame>,
 }
 
 impl<'g> Player<'g> {
-    fn new(gpu: &'g Gpu, course: &Course, technique: Technique) -> Result<Self, RenderError> {
-        Ok(Self { technique, renderer: Renderer::new(gpu, &course.animated.scene)?, pose: Pose::default() })
+    fn new(gpu: &'g Gpu, course: &Course, settings: Settings) -> Result<Self, Error> {
+        let renderer = Renderer::new(gpu, &course.animated.scene).map_err(|e| failed(&e))?;
+        Ok(Self { settings, renderer, pose: Pose::default(), samples: Vec::with_capacity(course.frames.len()) })
+    }
+
+    fn play(&mut self, course: &Course, k: usize, counts: bool) -> Result<(), Error> {
+        let frame = self.time(course, k).map_err(|e| failed(&e))?;
+        if counts {
+            self.samples.push(frame);
+        }
+        Ok(())
     }
 
     /// Renders frame `k` with the clock running: pose, plan, upload, encoding and rendering until the device is idle.
-    fn time(&mut self, course: &Course, k: usize, settings: &Settings) -> Result<Frame, RenderError> {
+    fn time(&mut self, course: &Course, k: usize) -> Result<Frame, RenderError> {
         let (seconds, view) = &course.frames[k];
         let (wall, cpu) = (Instant::now(), ProcessTime::now());
         course.pose_into(*seconds, &mut self.pose);
         self.renderer.set_pose(&self.pose)?;
-        let stats = self.renderer.render(view, settings)?;
+        let stats = self.renderer.render(view, &self.settings)?;
         Ok(Frame { cpu: cpu.elapsed(), wall: wall.elapsed(), stats })
     }
 }
@@ -131,14 +131,9 @@ mod tests {
     }
 
     #[test]
-    fn every_technique_comes_once_with_shadows_and_once_without() {
-        let all = Variant::all(&[]);
-        assert_eq!(all.len(), 2 * Technique::ALL.len());
-        for technique in Technique::ALL {
-            assert!([true, false].iter().all(|&shadows| all.contains(&Variant { technique, shadows })));
-        }
+    fn techniques_come_once_in_the_order_asked_for() {
+        assert_eq!(techniques(&[]), Technique::ALL);
         let [a, b] = [Technique::ALL[1], Technique::ALL[0]];
-        let chosen: Vec<_> = Variant::all(&[a, b, a]).iter().map(|variant| variant.technique).collect();
-        assert_eq!(chosen, [a, a, b, b]);
+        assert_eq!(techniques(&[a, b, a]), [a, b]);
     }
 }

@@ -13,7 +13,7 @@ use crate::args;
 use crate::console;
 use crate::error::Error;
 use crate::input;
-use measure::{Setup, Variant};
+use measure::{Samples, Setup};
 use record::Record;
 use scenes::Course;
 use serde::Serialize;
@@ -36,15 +36,18 @@ pub fn run(args: &args::Bench) -> Result<(), Error> {
     courses.iter().for_each(|course| console::notices(&course.animated.scene.notices, args.verbosity.quiet));
 
     let gpu = input::gpu(&args.device)?;
-    let variants = Variant::all(&args.techniques);
-    let setup = Setup { gpu: &gpu, variants: &variants, samples: args.samples };
+    let techniques = measure::techniques(&args.techniques);
+    let setup = Setup { gpu: &gpu, techniques: &techniques, samples: args.samples };
     let steps = courses.iter().map(|course| setup.frame_count(course)).sum();
     let progress = console::progress(steps, args.verbosity.quiet);
     let mut records: Vec<Record> = Vec::new();
     for course in &courses {
         progress.set_message(course.name.clone());
-        for (variant, frames) in variants.iter().zip(setup.play(course, &progress)?) {
-            records.push(Record::new(course, variant, args.samples, &frames));
+        let Samples { on, off } = setup.play(course, &progress)?;
+        for (&technique, on) in techniques.iter().zip(&on) {
+            for (shadows, frames) in [(true, on), (false, &off)] {
+                records.push(Record::new(course, technique, shadows, args.samples, frames));
+            }
         }
     }
     progress.finish_and_clear();

@@ -1,12 +1,12 @@
-//! What is said of a variant, in the shape of the JSON output.
+//! What is said of a technique, in the shape of the JSON output.
 //!
 //! In: its frames. Out: spreads of times, means of counts.
 
-use super::measure::{Frame, Variant};
+use super::measure::Frame;
 use super::scenes::Course;
 use serde::Serialize;
 use std::time::Duration;
-use zfail_render::{FrameStats, LightFigures};
+use zfail_render::{FrameStats, LightFigures, Technique};
 
 /// A scene by one technique, with shadows or without. Times are milliseconds per frame, counts means per frame over
 /// all lights; what the device cannot measure is null.
@@ -50,8 +50,8 @@ pub struct Spread {
 }
 
 impl Record {
-    /// Sums up the frames of `variant`.
-    pub fn new(course: &Course, variant: &Variant, samples: u32, frames: &[Frame]) -> Self {
+    /// Sums up the frames of one technique.
+    pub fn new(course: &Course, technique: Technique, shadows: bool, samples: u32, frames: &[Frame]) -> Self {
         let ms = |time: fn(&Frame) -> Duration| frames.iter().map(move |frame| time(frame).as_secs_f64() * 1e3);
         let gpu_ms: Option<Vec<f64>> = frames.iter().map(|frame| frame.stats.gpu_ms).collect();
         let mean = |count: fn(&LightFigures) -> u32| {
@@ -61,8 +61,8 @@ impl Record {
         let fragments: Option<u64> = frames.iter().map(|frame| fragments(&frame.stats)).sum();
         Self {
             scene: course.name.clone(),
-            technique: variant.technique.name(),
-            shadows: variant.shadows,
+            technique: technique.name(),
+            shadows,
             size: course.size,
             samples,
             frames: frames.len(),

@@ -128,7 +128,7 @@ impl Display for CameraReport {
 impl Display for AnimationReport {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         write!(f, "'{}': {:.3} s", self.name, self.duration)?;
-        if self.moves { Ok(()) } else { write!(f, ", moves no node of the scene") }
+        if self.moves { Ok(()) } else { write!(f, ", moves no instance, light or camera") }
     }
 }
 

@@ -24,7 +24,7 @@ mod store;
 mod technique;
 
 pub use stats::{Culled, LightStats, Triangles};
-pub use technique::{Counting, Measures, Technique, UnknownTechnique, ZPass};
+pub use technique::{Counting, Measures, Technique, Tiles, UnknownTechnique, ZPass};
 
 use crate::casting::ObjectLight;
 use crate::scene::{Bounds, LightKind};
@@ -99,6 +99,8 @@ pub struct Draw {
     pub cap: Vec4,
     /// Whether fragments count that pass the depth test instead of those that fail it.
     pub z_pass: bool,
+    /// Layers of the volume over the near rectangle, from which z-pass has to start; part of [`LightStats::near_count`].
+    pub near_layers: u32,
     /// Pixels in which the volume is to be drawn.
     pub scissor: Rectangle,
     /// Ranges into [`FramePlan::indices`].

@@ -7,12 +7,22 @@
 
 use super::pyramid::Pyramid;
 use crate::casting::ObjectLight;
-use crate::topology::Topology;
+use crate::scene::Bounds;
+use crate::topology::{Cover, Topology};
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 
 /// Items that one task looks at; fewer are not worth a task.
 const TASK: usize = 8192;
+
+/// What is known of a caster at the near rectangle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct NearCount {
+    /// Layers over all of it.
+    pub layers: u32,
+    /// Whether it may be within a solid, from where front faces hide nothing.
+    pub within_solid: bool,
+}
 
 /// The layers of the volume of `weights` over the whole near rectangle, or `None` where they may differ.
 /// `sides` are the volume's, `stride` indices each.
@@ -22,7 +32,7 @@ pub(super) fn near_count(
     sides: &[u32],
     stride: usize,
     pyramid: &Pyramid,
-) -> Option<u32> {
+) -> Option<NearCount> {
     let clear =
         |side: &[u32]| pyramid.excludes_segment(topology.position(side[0] >> 1), topology.position(side[1] >> 1));
     let all_clear = if sides.len() <= TASK * stride {
@@ -38,7 +48,20 @@ pub(super) fn near_count(
         return None;
     }
     let middle = pyramid.slab.iter().sum::<DVec3>() / 8.0;
-    Some(layers(topology, weights, pyramid.light, middle.extend(1.0)))
+    let layers = layers(topology, weights, pyramid.light, middle.extend(1.0));
+    Some(NearCount { layers, within_solid: within_solid(topology, pyramid, middle) })
+}
+
+/// Whether some of the near slab may be inside of a part that hides itself only from outside.
+fn within_solid(topology: &Topology, pyramid: &Pyramid, middle: DVec3) -> bool {
+    let slab = Bounds::of(pyramid.slab);
+    (0..topology.parts.len()).any(|p| {
+        let part = &topology.parts[p];
+        let apart = part.bounds.min.cmpgt(slab.max).any() || part.bounds.max.cmplt(slab.min).any();
+        let surface_apart =
+            || topology.triangles_of(p).iter().all(|&t| !pyramid.slab_meets(topology.corners(t as usize)));
+        part.cover == Cover::Outside && !apart && !(surface_apart() && topology.winding_number(p, middle) == Some(0))
+    })
 }
 
 fn any(weights: &[i8], test: impl Fn(usize, i8) -> bool + Sync) -> bool {

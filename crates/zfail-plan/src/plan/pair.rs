@@ -2,7 +2,7 @@
 
 use super::caps::Clusters;
 use super::meridians::{Crossings, Lines};
-use super::near_count;
+use super::near_count::{self, NearCount};
 use super::off_screen::Parts;
 use super::placed::Placed;
 use super::pyramid::Pyramid;
@@ -10,7 +10,7 @@ use super::store::Place;
 use crate::casting::{self, Casting, ObjectLight};
 use crate::scene::LightKind;
 use crate::scissor::Rectangle;
-use crate::topology::{NONE, Topology};
+use crate::topology::{Cover, NONE, Part, Topology};
 use crate::view::{Projection, View};
 use crate::volume::{self, Volume};
 use glam::{DAffine3, DVec3};
@@ -34,6 +34,8 @@ pub(super) enum Role {
 #[derive(Debug, Default)]
 pub(super) struct Pair {
     pub role: Role,
+    /// From which this frame's z-pass starts.
+    pub start: NearCount,
     pub light: ObjectLight,
     mesh: u64,
     /// Whether `weights` belong to `mesh`, `light` and `planar`.
@@ -58,7 +60,7 @@ pub(super) struct Pair {
     visible: Vec<u32>,
     now_visible: Vec<u32>,
     crossings: Option<Box<(DAffine3, Lines, Crossings)>>,
-    near: Option<Box<(Pyramid, Option<u32>)>>,
+    near: Option<Box<(Pyramid, Option<NearCount>)>>,
 }
 
 /// A closed volume of some of the pair's triangles.
@@ -194,7 +196,7 @@ impl Pair {
     }
 
     /// The number of layers over the near rectangle, if it is one number.
-    pub fn near_count(&mut self, topology: &Topology, pyramid: Pyramid) -> Option<u32> {
+    pub fn near_count(&mut self, topology: &Topology, pyramid: Pyramid) -> Option<NearCount> {
         let [piece] = self.pieces() else { return None };
         if piece.cap.is_some() || !self.batch_of.is_empty() {
             return None;
@@ -215,7 +217,7 @@ impl Pair {
     fn wanted(&self, topology: &Topology) -> Parts {
         let Role::Active { parts, z_pass, .. } = self.role else { return Parts::default() };
         // Counting in front, covered triangles never count, and infinity neither.
-        let hidden = z_pass && topology.parts.iter().all(|part| part.covered);
+        let hidden = z_pass && !self.start.within_solid && topology.parts.iter().all(|part| is_covered(part));
         Parts { sides: true, dark_cap: parts.dark_cap && !z_pass, light_cap: parts.light_cap && !hidden }
     }
 
@@ -266,7 +268,7 @@ impl Pair {
                 volume::cap_weights(topology, weights, &self.visible, &mut self.cap);
                 let covered = |t: usize| {
                     let part = topology.part_of[t];
-                    part != NONE && topology.parts[part as usize].covered
+                    part != NONE && is_covered(&topology.parts[part as usize])
                 };
                 for (i, sign) in [(0, 1), (1, -1)] {
                     let start = mark(indices);
@@ -296,7 +298,7 @@ impl Pair {
         if !parts.light_cap {
             drawn.light_cap.end = drawn.light_cap.start;
             drawn.light_cap_reversed.end = drawn.light_cap_reversed.start;
-        } else if z_pass {
+        } else if z_pass && !self.start.within_solid {
             // Covered triangles never lie before the visible surface.
             drawn.light_cap.end = piece.exposed[0];
             drawn.light_cap_reversed.end = piece.exposed[1];
@@ -325,6 +327,11 @@ impl Pair {
         }
         self.pieces().last().map_or(0, |p| p.batch as usize + 1)
     }
+}
+
+/// Whether a part's triangles never lie before the visible surface, seen from outside.
+fn is_covered(part: &Part) -> bool {
+    part.cover != Cover::Nowhere
 }
 
 fn is_planar(view: &View) -> bool {

@@ -3,6 +3,7 @@
 //! In: a frame. Out: the plan. Scratch memory is kept, so that a frame allocates nothing once its like has been planned.
 
 use super::batches::Batching;
+use super::near_count::NearCount;
 use super::occluders::Shadow;
 use super::off_screen::{self, Parts};
 use super::pair::{Pair, Role};
@@ -166,7 +167,7 @@ impl Planner {
         let pairs = &mut self.pairs[l * placed.len()..(l + 1) * placed.len()];
         for (c, (pair, caster)) in pairs.iter_mut().zip(placed).enumerate() {
             plan.stats.casters += 1;
-            pair.role = Role::Idle;
+            (pair.role, pair.start) = (Role::Idle, NearCount::default());
             let role = (|| {
                 if light.excluded.contains(&c) {
                     return Err(Culled::Excluded);
@@ -302,6 +303,7 @@ impl Planner {
                     for p in 0..pair.pieces().len() {
                         let drawn = pair.drawn(&pair.pieces()[p]);
                         let object_light = pair.light;
+                        let near_layers = if p == 0 { pair.start.layers } else { 0 };
                         let piece = pair.piece_mut(p);
                         if usize::from(piece.batch) != batch || drawn.triangles() == [0; 3] {
                             continue;
@@ -317,6 +319,7 @@ impl Planner {
                             light: object_light,
                             cap: piece.cap.map_or(Vec4::ZERO, plane),
                             z_pass,
+                            near_layers,
                             scissor: within,
                             volume: drawn.shifted(base),
                             mirrored: placed[c].mirrored,
@@ -353,10 +356,11 @@ fn count_from_near_rectangle(
     for (c, (pair, caster)) in pairs.iter_mut().zip(placed).enumerate() {
         let Role::Active { within, parts, z_pass: false } = pair.role else { continue };
         let pyramid = pyramid_of(frame, caster, pair, scissor);
-        let Some(count) = pair.near_count(frame.casters[c].topology, pyramid) else { continue };
-        sum += count;
+        let Some(start) = pair.near_count(frame.casters[c].topology, pyramid) else { continue };
+        sum += start.layers;
+        pair.start = start;
         // What every pixel starts with has to be counted in every pixel.
-        let (within, parts) = if count == 0 { (within, parts) } else { (scissor, Parts::ALL) };
+        let (within, parts) = if start.layers == 0 { (within, parts) } else { (scissor, Parts::ALL) };
         pair.role = Role::Active { within, parts, z_pass: true };
     }
     light.stats.near_count = sum;

@@ -44,13 +44,16 @@ impl Technique {
             fan: false,
             receivers: false,
             occluders: 0,
+            tiles: Tiles::Never,
         };
         let mcguire = Measures { reach: true, off_screen: true, z_pass: ZPass::ByCaster, fan: true, ..nothing };
         match self {
             Self::EverittKilgard => nothing,
             Self::Lengyel => Measures { reach: true, z_pass: ZPass::ByLight, ..nothing },
             Self::Mcguire => mcguire,
-            Self::Auto => Measures { near_count: true, receivers: true, occluders: 8, ..mcguire },
+            Self::Auto => {
+                Measures { near_count: true, receivers: true, occluders: 8, tiles: Tiles::WhereCheaper, ..mcguire }
+            }
         }
     }
 }
@@ -72,6 +75,19 @@ pub struct Measures {
     pub receivers: bool,
     /// Convex casters, per light, in whose shadow other casters are looked for to leave them out.
     pub occluders: u8,
+    /// Where to count sides by tiles in a compute shader instead of rasterising them, if the host lets it.
+    pub tiles: Tiles,
+}
+
+/// When the sides of a light's z-pass casters are counted by tiles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Tiles {
+    /// Not at all.
+    Never,
+    /// Where the cost model of the device says that it saves time.
+    WhereCheaper,
+    /// Wherever it can be done.
+    Always,
 }
 
 impl Default for Measures {

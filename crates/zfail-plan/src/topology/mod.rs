@@ -17,7 +17,7 @@ mod twins;
 mod weld;
 
 pub use convex::ConvexPart;
-pub use parts::{Part, Shape};
+pub use parts::{Cover, Part, Shape};
 pub use twins::same_winding;
 
 use crate::scene::Bounds;
@@ -177,7 +177,7 @@ impl Topology {
         }
         parts::find(&mut topology);
         topology.twins = twins::find(&topology);
-        parts::find_covered(&mut topology, surface);
+        parts::find_cover(&mut topology, surface);
         topology.convex = convex::largest(&topology);
         topology.bounds = Bounds::of(topology.parts.iter().flat_map(|part| [part.bounds.min, part.bounds.max]));
         Ok(topology)

@@ -17,8 +17,19 @@ pub struct Part {
     pub shape: Shape,
     /// Object-space bounds.
     pub bounds: Bounds,
-    /// Whether no ray from outside its bounds crosses one of its triangles before it meets a surface that is drawn.
-    pub covered: bool,
+    /// From where its triangles hide behind surfaces that are drawn.
+    pub cover: Cover,
+}
+
+/// From where no view ray crosses a part's triangles before it meets a surface that is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cover {
+    /// From nowhere: some triangles may be missing.
+    Nowhere,
+    /// From outside of the solid that the part bounds.
+    Outside,
+    /// From everywhere: both sides are drawn.
+    Everywhere,
 }
 
 /// What a connected part is, as far as casting cares.
@@ -99,30 +110,37 @@ pub(super) fn find(topology: &mut Topology) {
                 Shape::SelfIntersecting
             };
             let corners = triangles.iter().flat_map(|&t| topology_ref.corners(t as usize));
-            Part { triangles: range, shape, bounds: Bounds::of(corners), covered: false }
+            Part { triangles: range, shape, bounds: Bounds::of(corners), cover: Cover::Nowhere }
         })
         .collect();
     topology.parts = parts;
     debug_assert!(topology.part_of.iter().all(|&p| p == NONE || (p as usize) < topology.parts.len()));
 }
 
-/// Fills `covered`: a part whose triangles are drawn from both sides hides itself, and so does a solid whose front faces
-/// are drawn and look outward, for a ray leaves it through a back face only where it has entered through a front face.
-pub(super) fn find_covered(topology: &mut Topology, surface: impl Fn(usize) -> Surface) {
-    let covered = |part: usize| {
+/// Fills `cover`: a part whose triangles are drawn from both sides hides itself, and so does a solid whose front faces are
+/// drawn and look outward, for a ray leaves it through a back face only where it has entered through a front face.
+pub(super) fn find_cover(topology: &mut Topology, surface: impl Fn(usize) -> Surface) {
+    let cover = |part: usize| {
         let all = |test: fn(Surface) -> bool| topology.triangles_of(part).iter().all(|&t| test(surface(t as usize)));
         let outward = topology.parts[part].shape == Shape::Solid { inside: 1 };
-        all(|s| s == Surface::BothSides) || outward && all(|s| matches!(s, Surface::Front | Surface::BothSides))
+        if all(|s| s == Surface::BothSides) {
+            Cover::Everywhere
+        } else if outward && all(|s| matches!(s, Surface::Front | Surface::BothSides)) {
+            Cover::Outside
+        } else {
+            Cover::Nowhere
+        }
     };
-    let covered: Vec<bool> = (0..topology.parts.len()).map(covered).collect();
-    for (part, covered) in topology.parts.iter_mut().zip(covered) {
-        part.covered = covered;
+    let cover: Vec<Cover> = (0..topology.parts.len()).map(cover).collect();
+    for (part, cover) in topology.parts.iter_mut().zip(cover) {
+        part.cover = cover;
     }
     // A light cap may be drawn by a twin of another part.
     for group in &topology.twins {
         let parts = group.iter().map(|&t| topology.part_of[t as usize] as usize);
-        if !parts.clone().all(|part| topology.parts[part].covered) {
-            parts.for_each(|part| topology.parts[part].covered = false);
+        let first = topology.parts[parts.clone().next().unwrap_or(0)].cover;
+        if !parts.clone().all(|part| topology.parts[part].cover == first) {
+            parts.for_each(|part| topology.parts[part].cover = Cover::Nowhere);
         }
     }
 }

@@ -114,6 +114,19 @@ impl Rig {
         self.cameras.push(Carried { index, node, node_from_self, reach: 0.0, rest });
     }
 
+    /// Per node, whether it carries anything, itself or by a descendant.
+    pub fn loaded(&self) -> Vec<bool> {
+        let mut loaded = vec![false; self.nodes.len()];
+        let instances = self.instances.iter().chain(&self.cameras).map(|carried| carried.node);
+        instances.chain(self.lights.iter().map(|light| light.node)).for_each(|node| loaded[node] = true);
+        for (i, node) in self.nodes.iter().enumerate().rev() {
+            if let Parent::Moving(parent) = node.parent {
+                loaded[parent] |= loaded[i];
+            }
+        }
+        loaded
+    }
+
     /// Overwrites the placements in `pose` of all that is carried. `moves` are in the order of their nodes.
     pub fn pose(&self, moves: &[Move], seconds: f64, pose: &mut Pose) {
         let mut moves = moves.iter().peekable();

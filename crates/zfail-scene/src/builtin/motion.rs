@@ -31,11 +31,13 @@ fn turns(scene: &str) -> &'static [Turn] {
     const CONTAINER: &[Turn] = &[orbit("light", [0.09, 0.0, -0.06]), spin("knot")];
     const CATHEDRAL: &[Turn] = &[orbit("light", [0.4, 0.0, -1.2]), spin("dancer")];
     const NESTED: &[Turn] = &[spin("inner shell"), spin("middle shell"), spin("gimbal")];
+    const ROOM: &[Turn] = &[spin("statue"), spin("guard")];
     const STAGE: &[Turn] = &[spin("left dancer"), spin("middle dancer"), spin("right dancer")];
     match scene {
         "container" => CONTAINER,
         "cathedral" => CATHEDRAL,
         "nested" => NESTED,
+        "room" => ROOM,
         "stage" => STAGE,
         _ => &[],
     }
@@ -89,7 +91,7 @@ mod tests {
 
     #[test]
     fn everything_that_is_named_turns_and_comes_back() {
-        for name in ["container", "cathedral", "nested", "stage"] {
+        for name in ["container", "cathedral", "nested", "room", "stage"] {
             let animated = builtin::animated(name).unwrap();
             let rest = Pose::of(&animated.scene);
             let near = |pose: &Pose| {

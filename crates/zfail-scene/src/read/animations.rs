@@ -10,12 +10,13 @@ use super::document::Document;
 use super::error::{Result, invalid};
 use super::graph::{Graph, properties};
 use super::schema::{self, Channel, Component};
-use crate::animate::{Animation, Move, Node, Parent, Rig, Track};
+use crate::animate::{Animated, Animation, Move, Node, Parent, Rig, Track};
 use crate::placement::unit_quaternion;
 use glam::DQuat;
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use zfail_plan::scene::Scene;
 
 /// The animations of a document.
 pub(super) struct Motion {
@@ -23,6 +24,15 @@ pub(super) struct Motion {
     pub rig: Rig,
     /// By node of the document, its place in the rig.
     pub rig_node: Vec<Option<usize>>,
+}
+
+impl Motion {
+    /// The finished scene, without moves of nodes that carry nothing, such as the joints of skins.
+    pub fn animate(mut self, scene: Scene) -> Animated {
+        let loaded = self.rig.loaded();
+        self.animations.iter_mut().for_each(|animation| animation.moves.retain(|moved| loaded[moved.node]));
+        Animated { scene, animations: self.animations, rig: self.rig }
+    }
 }
 
 /// Reads all animations.

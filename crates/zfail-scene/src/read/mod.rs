@@ -141,7 +141,7 @@ fn read(path: &Path, limits: &Limits) -> Result<(Animated, FileInfo)> {
         scene.notices.push("the scene has no triangles".into());
     }
     tidy(&mut scene.notices);
-    Ok((Animated { scene, animations: motion.animations, rig: motion.rig }, info))
+    Ok((motion.animate(scene), info))
 }
 
 /// Parsed JSON is larger than its text: `{}` may become a material. Commas bound the other values.

@@ -266,7 +266,11 @@ fn what_cannot_be_animated_is_left_out_with_a_notice() {
 fn skins_rest_while_their_joints_move() {
     let mut gltf = sliding();
     gltf.json["skins"] = json!([{"joints": [0]}]);
-    assert_eq!(gltf.animated().scene.notices, ["skinned meshes stay in their rest pose"]);
+    let animated = gltf.animated();
+    assert_eq!(animated.scene.notices, ["skinned meshes stay in their rest pose"]);
+    assert!(animated.animations[0].moves_anything(), "the joint carries a mesh as well");
+    gltf.json["nodes"] = json!([{}, {"mesh": 0, "skin": 0}]);
+    assert!(!gltf.animated().animations[0].moves_anything());
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The tile pass: shadow counts from a compute shader, where rasterising long thin sides would cost more.
 //!
 //! In: the sides of the casters that z-pass may count, the count at the near plane, and the finished depth. Out: the
-//! verdict in the stencil, as if the sides had been drawn there (decision record 0010).
+//! verdict in the stencil, as if the sides had been drawn there (decision record 0012).
 //!
 //! It follows hierarchical shadow volumes (Aila & Akenine-Moller 2004) in that whole tiles are decided before pixels: the
 //! CPU lists each side quad in the tiles where it may lie before something visible, and only there do pixels look at it.
@@ -9,39 +9,34 @@
 mod bins;
 mod buffers;
 mod quad;
+mod verdict;
 
 pub use quad::Sides;
+pub use verdict::VerdictPipeline;
 
 use crate::error::Error;
-use crate::pipelines::Target;
 use bins::{Bins, TILE};
 use buffers::{Buffers, GroupRecord};
 use bytemuck::Zeroable;
 use glam::DVec2;
 use quad::{Quad, Sight};
 use wgpu::{
-    BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry,
-    BindingResource, BindingType, BufferBindingType, ColorTargetState, ColorWrites, CommandEncoder, CompareFunction,
-    ComputePassDescriptor, ComputePipeline, ComputePipelineDescriptor, DepthBiasState, DepthStencilState, Device,
-    FragmentState, MultisampleState, PipelineCompilationOptions, PipelineLayoutDescriptor, PrimitiveState, Queue,
-    RenderPass, RenderPipeline, RenderPipelineDescriptor, ShaderModule, ShaderStages, StencilFaceState,
-    StencilOperation, StencilState, StorageTextureAccess, TextureFormat, TextureSampleType, TextureView,
-    TextureViewDimension, VertexState,
+    BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry,
+    BindingResource, BindingType, BufferBindingType, CommandEncoder, ComputePassDescriptor, ComputePipeline,
+    ComputePipelineDescriptor, Device, PipelineCompilationOptions, PipelineLayoutDescriptor, Queue, RenderPass,
+    ShaderStages, StorageTextureAccess, TextureFormat, TextureSampleType, TextureView, TextureViewDimension,
 };
 use zfail_plan::scene::Bounds;
 use zfail_plan::scissor::Rectangle;
 use zfail_plan::view::{Projection, View};
-
-/// What the stencil holds where the tile pass finds shadow.
-const SHADOWED: u32 = 0x80;
 
 /// Sides of a frame's lights as the tile pass counts them. Memory is kept between frames.
 #[derive(Debug)]
 pub struct TilePass {
     count: ComputePipeline,
     count_layout: BindGroupLayout,
-    verdict_module: ShaderModule,
     verdict_layout: BindGroupLayout,
+    verdicts: Option<BindGroup>,
     /// The eye and all that it sees; `None` if the view has no eye.
     sight: Option<Sight>,
     size: [u32; 2],
@@ -62,10 +57,6 @@ struct Light {
     /// Pixels that can be in shadow.
     scissor: Rectangle,
 }
-
-/// The pipeline of [`TilePass::draw`] for one [`Target`].
-#[derive(Debug)]
-pub struct VerdictPipeline(RenderPipeline);
 
 /// Figures of one light in the tile pass, for reports and cost models.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -100,15 +91,11 @@ impl TilePass {
             },
             cache: None,
         });
-        let verdict_layout = device.create_bind_group_layout(&BindGroupLayoutDescriptor {
-            label: Some("tile verdict"),
-            entries: &[sampled(0, ShaderStages::FRAGMENT, TextureSampleType::Uint, TextureViewDimension::D2Array)],
-        });
         Self {
             count,
             count_layout,
-            verdict_module: device.create_shader_module(wgpu::include_wgsl!("verdict.wgsl")),
-            verdict_layout,
+            verdict_layout: verdict::layout(device),
+            verdicts: None,
             sight: None,
             size: [0; 2],
             bins: Bins::default(),
@@ -120,50 +107,6 @@ impl TilePass {
             lights: Vec::new(),
             buffers: Buffers::new(device),
         }
-    }
-
-    /// The pipeline that brings verdicts into passes with the formats of `target`; `None` for multisampled targets, whose
-    /// samples the tile pass does not see.
-    #[must_use]
-    pub fn pipeline(&self, device: &Device, target: &Target<'_>) -> Option<VerdictPipeline> {
-        let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
-            label: Some("tile verdict"),
-            bind_group_layouts: &[Some(&self.verdict_layout)],
-            immediate_size: 0,
-        });
-        let face = StencilFaceState { pass_op: StencilOperation::Replace, ..StencilFaceState::IGNORE };
-        let untouched = |format| ColorTargetState { format, blend: None, write_mask: ColorWrites::empty() };
-        let colors: Vec<_> = target.colors.iter().map(|format| format.map(untouched)).collect();
-        let pipeline = || {
-            device.create_render_pipeline(&RenderPipelineDescriptor {
-                label: Some("tile verdict"),
-                layout: Some(&layout),
-                vertex: VertexState {
-                    module: &self.verdict_module,
-                    entry_point: None,
-                    compilation_options: PipelineCompilationOptions::default(),
-                    buffers: &[],
-                },
-                primitive: PrimitiveState::default(),
-                depth_stencil: Some(DepthStencilState {
-                    format: target.depth_stencil,
-                    depth_write_enabled: Some(false),
-                    depth_compare: Some(CompareFunction::Always),
-                    stencil: StencilState { front: face, back: face, read_mask: 0, write_mask: 0xff },
-                    bias: DepthBiasState::default(),
-                }),
-                multisample: MultisampleState::default(),
-                fragment: Some(FragmentState {
-                    module: &self.verdict_module,
-                    entry_point: None,
-                    compilation_options: PipelineCompilationOptions::default(),
-                    targets: &colors,
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
-        };
-        (target.samples == 1).then(|| VerdictPipeline(pipeline()))
     }
 
     /// Forgets the last frame's lights and begins with a new view. `visible` are world-space bounds of all surfaces in it
@@ -191,8 +134,11 @@ impl TilePass {
     /// Adds a light with the `sides` of its volumes. `base` is the sum of the counts at the near plane of the casters
     /// they belong to, the same on all of the near rectangle, which none of the sides may cross.
     ///
+    /// `worth` is asked whether so many pairs of a quad and a tile are worth it.
+    ///
     /// Returns figures of the light, which [`Self::draw`] knows by the number of lights added before it, or `None` if it
-    /// has to be rasterised: the view is orthographic, or the lists outgrow the device's textures.
+    /// has to be rasterised: the view is orthographic, the pairs are not worth it, or the lists outgrow the device's
+    /// textures.
     ///
     /// # Panics
     /// If `sides` refer to positions that there are not.
@@ -201,6 +147,7 @@ impl TilePass {
         device: &Device,
         base: i32,
         sides: impl IntoIterator<Item = Sides<'a>>,
+        worth: impl FnOnce(usize) -> bool,
     ) -> Option<TileStats> {
         let sight = self.sight?;
         let before = (self.quads.len(), self.entries.len(), self.places.len());
@@ -212,6 +159,10 @@ impl TilePass {
             });
         }
         let pairs = self.bins.pairs();
+        if !worth(pairs) {
+            self.quads.truncate(before.0);
+            return None;
+        }
         self.found.clear();
         self.bins.append(&mut self.entries, &mut self.found, &mut self.places);
         let light = self.lights.len() as u32;
@@ -240,7 +191,13 @@ impl TilePass {
     /// Lists that are too large for the device's buffers.
     pub fn upload(&mut self, device: &Device, queue: &Queue) -> Result<(), Error> {
         let bases = self.lights.iter().map(|light| light.base);
-        self.buffers.upload(device, queue, self.size, &self.groups, &self.places, &self.entries, &self.quads, bases)
+        self.buffers.upload(device, queue, self.size, &self.groups, &self.places, &self.entries, &self.quads, bases)?;
+        self.verdicts = Some(device.create_bind_group(&BindGroupDescriptor {
+            label: Some("tile verdict"),
+            layout: &self.verdict_layout,
+            entries: &[BindGroupEntry { binding: 0, resource: BindingResource::TextureView(self.buffers.shadowed()) }],
+        }));
+        Ok(())
     }
 
     /// Encodes the counting of all lights. `depth` is the finished depth of the view, a view of the depth aspect alone of a
@@ -268,22 +225,13 @@ impl TilePass {
     /// as it is. Volumes that are rasterised for the same light come before.
     ///
     /// Sets pipeline, bind group 0, stencil reference and scissor.
-    pub fn draw(&self, device: &Device, pass: &mut RenderPass<'_>, pipeline: &VerdictPipeline, light: usize) {
-        let Some(Light { scissor: [x, y, width, height], .. }) = self.lights.get(light) else { return };
-        if *width == 0 || *height == 0 {
-            return;
+    pub fn draw(&self, pass: &mut RenderPass<'_>, pipeline: &VerdictPipeline, light: usize) {
+        let (Some(Light { scissor, .. }), Some(bindings)) = (self.lights.get(light), &self.verdicts) else { return };
+        let [x, y, width, height] = *scissor;
+        if width > 0 && height > 0 {
+            pass.set_scissor_rect(x, y, width, height);
+            pipeline.draw(pass, bindings, light as u32);
         }
-        let bindings = device.create_bind_group(&BindGroupDescriptor {
-            label: Some("tile verdict"),
-            layout: &self.verdict_layout,
-            entries: &[BindGroupEntry { binding: 0, resource: BindingResource::TextureView(self.buffers.shadowed()) }],
-        });
-        let light = light as u32;
-        pass.set_scissor_rect(*x, *y, *width, *height);
-        pass.set_pipeline(&pipeline.0);
-        pass.set_bind_group(0, &bindings, &[]);
-        pass.set_stencil_reference(SHADOWED);
-        pass.draw(0..3, light..light + 1);
     }
 }
 

@@ -117,25 +117,38 @@ pub fn draw(
         view_formats: &[],
     });
     let attachment = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    let depth = texture.create_view(&wgpu::TextureViewDescriptor {
+        aspect: wgpu::TextureAspect::DepthOnly,
+        ..wgpu::TextureViewDescriptor::default()
+    });
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &attachment,
-                depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(setup.depth_clear),
-                    store: wgpu::StoreOp::Store,
-                }),
-                stencil_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0), store: wgpu::StoreOp::Store }),
-            }),
-            ..wgpu::RenderPassDescriptor::default()
-        });
+        let mut pass = begin(&mut encoder, &attachment, wgpu::LoadOp::Clear(setup.depth_clear));
         if setup.draw_depth {
             draw_depth(device, &mut pass, setup, view, meshes);
         }
-        shadows.draw(&mut pass, &pipelines, 0);
     }
+    if setup.samples == 1 {
+        shadows.prepare_tiles(device, queue).expect("tiles");
+        shadows.count_tiles(device, &mut encoder, &depth);
+    }
+    shadows.draw(&mut begin(&mut encoder, &attachment, wgpu::LoadOp::Load), &pipelines, 0);
     (read_stencil(device, queue, encoder, &texture), shadows.plan().clone())
+}
+
+fn begin<'e>(
+    encoder: &'e mut wgpu::CommandEncoder,
+    attachment: &wgpu::TextureView,
+    depth: wgpu::LoadOp<f32>,
+) -> wgpu::RenderPass<'e> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: attachment,
+            depth_ops: Some(wgpu::Operations { load: depth, store: wgpu::StoreOp::Store }),
+            stencil_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0), store: wgpu::StoreOp::Store }),
+        }),
+        ..wgpu::RenderPassDescriptor::default()
+    })
 }
 
 pub fn draw_depth(

@@ -28,6 +28,7 @@ fn solids() -> Vec<Mesh> {
     let mirror = DAffine3::from_scale(DVec3::new(-1.0, 2.0, 0.5));
     vec![
         cuboid(DVec3::new(-1.0, 0.0, -2.0), DVec3::new(1.0, 3.0, 0.1)),
+        divided_cuboid(DVec3::new(-1.0, 0.0, -2.0), DVec3::new(1.0, 3.0, 0.1), 7),
         ico_sphere(0.7, 0, false),
         ico_sphere(0.7, 3, true),
         uv_sphere(2.0, 17, 9),
@@ -86,6 +87,7 @@ fn volumes_approach_the_known_ones() {
         assert!((got / expected - 1.0).abs() < 0.01, "{}: {got} instead of {expected}", mesh.name);
     };
     close(cuboid(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)), 6.0);
+    close(divided_cuboid(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0), 5), 6.0);
     close(uv_sphere(2.0, 96, 48), pi * 32.0 / 3.0);
     close(ico_sphere(2.0, 4, true), pi * 32.0 / 3.0);
     close(torus(2.0, 0.5, 96, 48), pi * pi);
