@@ -340,6 +340,8 @@ fn what_cannot_be_tiled_is_refused() {
     let mut pass = TilePass::new(&device);
     let target = Target { colors: &[], depth_stencil: wgpu::TextureFormat::Depth32FloatStencil8, samples: 4 };
     assert!(pass.pipeline(&device, &target).is_none());
+    let target = Target { colors: &[Some(wgpu::TextureFormat::Rgba8Unorm), None], samples: 1, ..target };
+    assert!(pass.pipeline(&device, &target).is_some());
     let mut view = scene(0).view;
     view.projection = Projection::Orthographic { ymag: 1.0, near: 0.0, far: 1.0 };
     pass.begin(&view, &Bounds::of([DVec3::ZERO]));

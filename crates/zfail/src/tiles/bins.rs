@@ -162,7 +162,7 @@ fn centres(lo: f64, hi: f64, n: f64) -> Option<[u32; 2]> {
 
 /// First and last of the tiles that hold `pixels` and some of the `length` pixels from `start` on.
 fn tiles(pixels: [u32; 2], start: u32, length: u32) -> Option<[u32; 2]> {
-    let last = (start + length).checked_sub(1)? / TILE;
+    let last = start.saturating_add(length).checked_sub(1)? / TILE;
     let range = [(pixels[0] / TILE).max(start / TILE), (pixels[1] / TILE).min(last)];
     (length > 0 && range[0] <= range[1]).then_some(range)
 }

@@ -169,7 +169,8 @@ impl TilePass {
     }
 
     /// Forgets the last frame's lights and begins with a new view. `visible` are world-space bounds of all surfaces in it
-    /// that a light of this pass can reach: shadows beyond them are not looked for.
+    /// that a light of this pass can reach: shadows beyond them are not looked for, and pixels without a surface get any
+    /// verdict.
     pub fn begin(&mut self, view: &View, visible: &Bounds) {
         self.size = view.size;
         self.quads.clear();
@@ -214,11 +215,17 @@ impl TilePass {
             });
         }
         let pairs = self.bins.pairs();
-        self.found.clear();
-        self.bins.append(&mut self.entries, &mut self.found, &mut self.places);
         let rows = self.size[1].div_ceil(TILE);
         let row = self.lights.len() as u32 * rows;
-        if !buffers::fit(&device.limits(), self.quads.len(), self.entries.len(), (row + rows) as usize) {
+        let limits = device.limits();
+        let fits = |quads, entries| buffers::fit(&limits, quads, entries, (row + rows) as usize);
+        self.found.clear();
+        // Groups add entries, so ask before and after.
+        let may_fit = fits(self.quads.len(), before.1 + pairs);
+        if may_fit {
+            self.bins.append(&mut self.entries, &mut self.found, &mut self.places);
+        }
+        if !may_fit || !fits(self.quads.len(), self.entries.len()) {
             self.quads.truncate(before.0);
             self.entries.truncate(before.1);
             self.places.truncate(before.2);
