@@ -319,7 +319,7 @@ impl Shadows {
         if let Some((light, pipeline)) = tiled
             && let Some(tiled) = &self.tiled
         {
-            tiled.pass.draw(pass, pipeline, light.index);
+            tiled.pass.draw(pass, pipeline, light.index, scissor);
         }
         let [x, y, width, height] = self.image;
         pass.set_scissor_rect(x, y, width, height);

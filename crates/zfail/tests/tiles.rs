@@ -127,7 +127,14 @@ fn tiled(scene: &Scene, near: u8, fault: Fault) -> Vec<u8> {
     let (technique, counting) = (Technique::EverittKilgard, Counting::Raw);
     let mut planner = Planner::new();
     let plan = planner
-        .plan(&Frame { view: &scene.view, casters: &casters, lights: &lights, receivers: &[], measures: technique.into(), counting })
+        .plan(&Frame {
+            view: &scene.view,
+            casters: &casters,
+            lights: &lights,
+            receivers: &[],
+            measures: technique.into(),
+            counting,
+        })
         .expect("plan");
 
     let sides = plan.draws.iter().map(|draw| {
@@ -198,7 +205,7 @@ fn tiled(scene: &Scene, near: u8, fault: Fault) -> Vec<u8> {
     let mut counts = vec![LEVELS as u8; (SIZE[0] * SIZE[1]) as usize];
     for level in 0..LEVELS {
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        pass.draw(&mut begin(&mut encoder, wgpu::LoadOp::Load), &pipeline, level);
+        pass.draw(&mut begin(&mut encoder, wgpu::LoadOp::Load), &pipeline, level, [0, 0, SIZE[0], SIZE[1]]);
         let lit = stage::read_stencil(&device, &queue, encoder, &texture);
         for (count, _) in counts.iter_mut().zip(lit).filter(|(_, stencil)| *stencil == 0) {
             *count = level as u8;
@@ -340,6 +347,8 @@ fn what_cannot_be_tiled_is_refused() {
     let mut pass = TilePass::new(&device);
     let target = Target { colors: &[], depth_stencil: wgpu::TextureFormat::Depth32FloatStencil8, samples: 4 };
     assert!(VerdictPipeline::new(&device, &target).is_none());
+    let target = Target { colors: &[Some(wgpu::TextureFormat::Rgba8Unorm), None], samples: 1, ..target };
+    assert!(VerdictPipeline::new(&device, &target).is_some());
     let mut view = scene(0).view;
     view.projection = Projection::Orthographic { ymag: 1.0, near: 0.0, far: 1.0 };
     pass.begin(&view, &Bounds::of([DVec3::ZERO]));

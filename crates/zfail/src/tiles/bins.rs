@@ -98,9 +98,11 @@ impl Bins {
             }
             let from = if p.y < top { p.x + slope * (top - p.y) } else { p.x };
             let to = if q.y > bottom { p.x + slope * (bottom - p.y) } else { q.x };
+            let (from, to) = if from < to { (from, to) } else { (to, from) };
             let [lo, hi] = &mut self.reach[row as usize];
-            *lo = lo.min(from.min(to));
-            *hi = hi.max(from.max(to));
+            // Unlike `min` and `max` without regard to NaN, one instruction each.
+            *lo = if from < *lo { from } else { *lo };
+            *hi = if to > *hi { to } else { *hi };
         }
     }
 
@@ -147,14 +149,20 @@ impl Bins {
 
 /// First and last of `n` pixels whose centres lie in `lo..=hi`, give or take the margin.
 fn centres(lo: f64, hi: f64, n: f64) -> Option<[u32; 2]> {
-    let first = (lo - 0.5 - MARGIN).ceil().max(0.0);
-    let last = (hi - 0.5 + MARGIN).floor().min(n - 1.0);
-    (first <= last).then_some([first as u32, last as u32])
+    let first = (lo - 0.5 - MARGIN).max(0.0);
+    let last = (hi - 0.5 + MARGIN).min(n - 1.0);
+    if last < first {
+        return None;
+    }
+    // Rounding up by hand: this runs for every row of every quad, and `ceil` is a call on old instruction sets.
+    let below = first as u32;
+    let range = [below + u32::from(f64::from(below) < first), last as u32];
+    (range[0] <= range[1]).then_some(range)
 }
 
 /// First and last of the tiles that hold `pixels` and some of the `length` pixels from `start` on.
 fn tiles(pixels: [u32; 2], start: u32, length: u32) -> Option<[u32; 2]> {
-    let last = (start + length).checked_sub(1)? / TILE;
+    let last = start.saturating_add(length).checked_sub(1)? / TILE;
     let range = [(pixels[0] / TILE).max(start / TILE), (pixels[1] / TILE).min(last)];
     (length > 0 && range[0] <= range[1]).then_some(range)
 }

@@ -27,7 +27,7 @@ use wgpu::{
     ShaderStages, StorageTextureAccess, TextureFormat, TextureSampleType, TextureView, TextureViewDimension,
 };
 use zfail_plan::scene::Bounds;
-use zfail_plan::scissor::Rectangle;
+use zfail_plan::scissor::{self, Rectangle};
 use zfail_plan::view::{Projection, View};
 
 /// Sides of a frame's lights as the tile pass counts them. Memory is kept between frames.
@@ -112,7 +112,8 @@ impl TilePass {
     }
 
     /// Forgets the last frame's lights and begins with a new view. `visible` are world-space bounds of all surfaces in it
-    /// that a light of this pass can reach: shadows beyond them are not looked for.
+    /// that a light of this pass can reach: shadows beyond them are not looked for, and pixels without a surface get any
+    /// verdict.
     pub fn begin(&mut self, view: &View, visible: &Bounds) {
         self.size = view.size;
         self.quads.clear();
@@ -165,11 +166,17 @@ impl TilePass {
             self.quads.truncate(before.0);
             return None;
         }
-        self.found.clear();
-        self.bins.append(&mut self.entries, &mut self.found, &mut self.places);
         let rows = self.size[1].div_ceil(TILE);
         let row = self.lights.len() as u32 * rows;
-        if !buffers::fit(&device.limits(), self.quads.len(), self.entries.len(), (row + rows) as usize) {
+        let limits = device.limits();
+        let fits = |quads, entries| buffers::fit(&limits, quads, entries, (row + rows) as usize);
+        self.found.clear();
+        // Groups add entries, so ask before and after.
+        let may_fit = fits(self.quads.len(), before.1 + pairs);
+        if may_fit {
+            self.bins.append(&mut self.entries, &mut self.found, &mut self.places);
+        }
+        if !may_fit || !fits(self.quads.len(), self.entries.len()) {
             self.quads.truncate(before.0);
             self.entries.truncate(before.1);
             self.places.truncate(before.2);
@@ -225,15 +232,14 @@ impl TilePass {
     }
 
     /// Encodes the verdict on the `light`th light added: the stencil of pixels in its shadow is set, that of others is left
-    /// as it is. Volumes that are rasterised for the same light come before.
+    /// as it is, and so are those not `within`. Volumes that are rasterised for the same light come before.
     ///
     /// Sets pipeline, bind group 0, stencil reference and scissor.
-    pub fn draw(&self, pass: &mut RenderPass<'_>, pipeline: &VerdictPipeline, light: usize) {
+    pub fn draw(&self, pass: &mut RenderPass<'_>, pipeline: &VerdictPipeline, light: usize, within: Rectangle) {
         let (Some(&Light { row, scissor, .. }), Some(bindings)) = (self.lights.get(light), &self.verdicts) else {
             return;
         };
-        let [x, y, width, height] = scissor;
-        if width > 0 && height > 0 {
+        if let Some([x, y, width, height]) = scissor::intersection(scissor, within) {
             pass.set_scissor_rect(x, y, width, height);
             pipeline.draw(pass, bindings, row);
         }

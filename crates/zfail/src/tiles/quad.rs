@@ -32,7 +32,7 @@ pub struct Sides<'a> {
     pub converging: bool,
     /// Whether `world_from_object` mirrors, so that the outside is clockwise.
     pub mirrored: bool,
-    /// The only pixels that the caster may darken.
+    /// The only pixels that the caster may darken: the whole image if its count at the near plane is not zero.
     pub scissor: Rectangle,
 }
 
