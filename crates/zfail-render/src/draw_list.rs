@@ -115,6 +115,12 @@ pub struct DrawList {
 }
 
 impl DrawList {
+    /// Triangles of [`Self::solid`], every instance counted.
+    pub fn solid_triangles(&self) -> u32 {
+        let triangles = |draw: &Draw| self.parts[draw.part].indices.len() / 3 * draw.slots.len();
+        self.solid.iter().map(triangles).sum::<usize>().try_into().unwrap_or(u32::MAX)
+    }
+
     /// Lists the parts of a scene that has passed [`crate::check::scene`].
     pub fn new(scene: &Scene) -> Self {
         let default = Material::default();

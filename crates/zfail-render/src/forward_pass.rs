@@ -19,22 +19,35 @@ pub struct Step {
     pub developed: bool,
     /// Lights in use; all numbers that are not unrolled are the same.
     lights: u32,
-    /// Depth and verdicts are there already.
-    pub shadowed: bool,
+    /// Where the verdicts are, and with them the depth.
+    pub shadows: Shadows,
     /// Adds more lights to what an earlier step has drawn.
     pub added: bool,
 }
 
+/// How a step learns what is in shadow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Shadows {
+    /// Nothing is.
+    None,
+    /// From a bit per light in a texture.
+    Bits,
+    /// From the stencil, which holds the one light's verdict: shadowed and lit pixels are drawn after each other, each with
+    /// a test instead of a texture, and the former without the light.
+    Stencil,
+}
+
 impl Step {
-    pub fn new(samples: u32, developed: bool, lights: usize, shadowed: bool, added: bool) -> Self {
-        Self { samples, developed, lights: lights.min(UNROLLED + 1) as u32, shadowed, added }
+    pub fn new(samples: u32, developed: bool, lights: usize, shadows: Shadows, added: bool) -> Self {
+        Self { samples, developed, lights: lights.min(UNROLLED + 1) as u32, shadows, added }
     }
 }
 
 /// What a pipeline depends on.
 type Key = (Look, bool, Step);
 
-/// Pipelines of the pass, made when they are first needed. Blended surfaces with two sides have two: inner sides first.
+/// Pipelines of the pass, made when they are first needed. Blended surfaces with two sides have two, inner sides first, and
+/// surfaces under [`Shadows::Stencil`] have one for lit and one for shadowed pixels.
 #[derive(Debug, Default)]
 pub struct ForwardPass {
     pipelines: HashMap<Key, Vec<wgpu::RenderPipeline>>,
@@ -44,7 +57,7 @@ pub struct ForwardPass {
 pub struct Attachments<'a> {
     pub color: wgpu::RenderPassColorAttachment<'a>,
     pub depth_stencil: wgpu::RenderPassDepthStencilAttachment<'a>,
-    /// Needed by shadowed steps.
+    /// Needed by steps with [`Shadows::Bits`].
     pub verdicts: Option<&'a wgpu::BindGroup>,
     pub timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'a>>,
 }
@@ -101,8 +114,8 @@ impl ForwardPass {
 
 fn key(look: Look, mirrored: bool, step: Step) -> Key {
     // No shadow falls on blended surfaces.
-    let shadowed = step.shadowed && look.alpha != Alpha::Blend;
-    (look, mirrored, Step { shadowed, ..step })
+    let shadows = if look.alpha == Alpha::Blend { Shadows::None } else { step.shadows };
+    (look, mirrored, Step { shadows, ..step })
 }
 
 fn create(gpu: &Gpu, layouts: &Layouts, (look, mirrored, step): Key) -> Vec<wgpu::RenderPipeline> {
@@ -116,51 +129,66 @@ fn create(gpu: &Gpu, layouts: &Layouts, (look, mirrored, step): Key) -> Vec<wgpu
         ("EMISSIVE", emissive),
         ("ROUGH", look.rough),
         // Masked surfaces have been cut out by the depth pass already.
-        ("ALPHA_MASK", look.alpha == Alpha::Mask && !step.shadowed),
+        ("ALPHA_MASK", look.alpha == Alpha::Mask && step.shadows == Shadows::None),
         ("BLEND", blend),
         ("UNLIT", look.unlit),
         ("ADDED", step.added),
         ("DEVELOPED", step.developed),
     ]
     .map(|(name, value)| (name, f64::from(u8::from(value))));
-    let mut constants = constants.to_vec();
-    constants.push(("LIGHTS", f64::from(step.lights)));
     let state = if blend {
         (wgpu::CompareFunction::Greater, false)
-    } else if step.shadowed {
+    } else if step.shadows != Shadows::None {
         (wgpu::CompareFunction::Equal, false)
     } else {
         (wgpu::CompareFunction::GreaterEqual, true)
     };
     let mut groups = vec![&layouts.frame, &layouts.material];
-    if step.shadowed {
+    let bits = step.shadows == Shadows::Bits;
+    if bits {
         groups.push(layouts.verdicts(step.samples));
     }
-    let recipe = Recipe {
-        program: shader::forward(look.vertices(), step.shadowed.then_some(step.samples)),
-        entry: "forward",
-        constants: &constants,
-        groups: &groups,
-        targets: &[Some(wgpu::ColorTargetState {
-            format: if step.developed { LDR } else { RADIANCE },
-            blend: if blend {
-                Some(over(look.unlit))
-            } else if step.added {
-                Some(ADD)
-            } else {
-                None
-            },
-            write_mask: wgpu::ColorWrites::ALL,
-        })],
-        depth_stencil: Some(depth_test(gpu.depth_stencil, state.0, state.1)),
-        samples: step.samples,
+    let target = wgpu::ColorTargetState {
+        format: if step.developed { LDR } else { RADIANCE },
+        blend: if blend {
+            Some(over(look.unlit))
+        } else if step.added {
+            Some(ADD)
+        } else {
+            None
+        },
+        write_mask: wgpu::ColorWrites::ALL,
+    };
+    let face = wgpu::StencilFaceState { compare: wgpu::CompareFunction::NotEqual, ..wgpu::StencilFaceState::IGNORE };
+    let shadowed = wgpu::StencilState { front: face, back: face, read_mask: 0xff, write_mask: 0 };
+    let passes: &[(u32, wgpu::StencilState)] = match step.shadows {
+        Shadows::Stencil => &[(step.lights, zfail::lit_stencil()), (0, shadowed)],
+        Shadows::None | Shadows::Bits => &[(step.lights, wgpu::StencilState::default())],
     };
     let faces: &[Option<wgpu::Face>] = match (blend, look.double_sided) {
         (true, true) => &[Some(wgpu::Face::Front), Some(wgpu::Face::Back)],
         (false, true) => &[None],
         (_, false) => &[Some(wgpu::Face::Back)],
     };
-    faces.iter().map(|&cull| recipe.scene(&gpu.device, look.vertices(), mirrored, cull)).collect()
+    let mut pipelines = Vec::new();
+    for (lights, stencil) in passes {
+        let mut constants = constants.to_vec();
+        constants.push(("LIGHTS", f64::from(*lights)));
+        let depth_stencil = depth_test(gpu.depth_stencil, state.0, state.1);
+        for &cull in faces {
+            let recipe = Recipe {
+                program: shader::forward(look.vertices(), bits.then_some(step.samples)),
+                entry: "forward",
+                constants: &constants,
+                groups: &groups,
+                targets: &[Some(target.clone())],
+                depth_stencil: Some(wgpu::DepthStencilState { stencil: stencil.clone(), ..depth_stencil.clone() }),
+                samples: step.samples,
+            };
+            pipelines.push(recipe.scene(&gpu.device, look.vertices(), mirrored, cull));
+        }
+    }
+    pipelines
 }
 
 /// Covers what is there. The target's alpha is the share that is shown without exposure: unlit surfaces add to it.

@@ -4,7 +4,7 @@
 use crate::attribute_pass::AttributePass;
 use crate::develop_pass::DevelopPass;
 use crate::exposure::ExposureMeter;
-use crate::forward_pass::{Attachments, ForwardPass, Step};
+use crate::forward_pass::{Attachments, ForwardPass, Shadows, Step};
 use crate::frame::{FrameData, Shading};
 use crate::gpu_data::LightRecord;
 use crate::layouts::Layouts;
@@ -36,7 +36,8 @@ pub struct Renderer<'g> {
     frame: FrameData,
     forward: ForwardPass,
     /// By sample count.
-    verdicts: HashMap<u32, VerdictPass>,
+    /// By sample count and whether verdicts become bits.
+    verdicts: HashMap<(u32, bool), VerdictPass>,
     /// By sample count.
     darkroom: HashMap<u32, (ExposureMeter, DevelopPass)>,
     targets: Option<Targets>,
@@ -231,29 +232,38 @@ impl<'g> Renderer<'g> {
         )?;
         let targets = self.targets.as_mut().ok_or_else(no_targets)?;
         let shadowed = spans.shadows && part.solid;
-        let step = Step::new(samples, finish == Finish::Forward, records.len(), shadowed, added && part.solid);
+        // Drawing everything twice is cheaper than a texture of verdicts unless there is more to draw than to fill.
+        let few = scene.draws.solid_triangles() < view.size[0] * view.size[1] / 8;
+        let shadows = match (shadowed, records.len() == 1 && samples == 1 && few) {
+            (false, _) => Shadows::None,
+            (true, true) => Shadows::Stencil,
+            (true, false) => Shadows::Bits,
+        };
+        let step = Step::new(samples, finish == Finish::Forward, records.len(), shadows, added && part.solid);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let depth_stencil = targets.depth_stencil.clone();
         if shadowed {
-            let shadows = &scene.shadows;
-            let pass = self.verdicts.entry(samples).or_insert_with(|| VerdictPass::new(gpu, shadows, samples));
+            let bits = shadows == Shadows::Bits;
+            let volumes = &scene.shadows;
+            let pass =
+                self.verdicts.entry((samples, bits)).or_insert_with(|| VerdictPass::new(gpu, volumes, samples, bits));
             pass.prepare(gpu, layouts, scene);
             let verdicts = lights.iter().map(|&light| Verdict {
                 light,
                 scissor: Some(figures[light].scissor).filter(|_| figures[light].has_shadow()),
                 span: spans.light(light),
             });
-            let depth = targets.depth.clone().filter(|_| shadows.counts_tiles());
+            let depth = targets.depth.clone().filter(|_| volumes.counts_tiles());
             let tiles = depth.as_ref().map(|depth| (&gpu.device, depth));
-            let verdict_view = &targets.verdicts(gpu, layouts).view;
-            let views = [verdict_view, &depth_stencil];
-            pass.encode(&mut encoder, views, &self.frame, scene, verdicts, tiles, (timer, Some(0)));
+            let view = bits.then(|| targets.verdicts(gpu, layouts).view.clone());
+            let timer = (timer, Some(0));
+            pass.encode(&mut encoder, view.as_ref(), &depth_stencil, &self.frame, scene, verdicts, tiles, timer);
         }
 
         let solid = scene.draws.solid.iter().filter(|_| part.solid);
         let draws = solid.chain(scene.draws.blended.iter().filter(|_| part.blended));
         self.forward.prepare(gpu, layouts, scene, step, draws.clone());
-        let verdicts = shadowed.then(|| targets.verdicts(gpu, layouts).bind_group.clone());
+        let verdicts = (shadows == Shadows::Bits).then(|| targets.verdicts(gpu, layouts).bind_group.clone());
         let color = match finish {
             Finish::Forward => {
                 let [r, g, b] = exposed.background.map(|c| c * exposed.exposure);

@@ -25,6 +25,8 @@ type Key = (bool, bool, Option<bool>);
 #[derive(Debug)]
 pub struct VerdictPass {
     samples: u32,
+    /// Whether verdicts become bits; otherwise that of the one light stays in the stencil.
+    bits: bool,
     depth: HashMap<Key, wgpu::RenderPipeline>,
     volumes: zfail::Pipelines,
     /// One per channel.
@@ -43,8 +45,9 @@ pub struct Verdict {
 }
 
 impl VerdictPass {
-    pub fn new(gpu: &Gpu, shadows: &zfail::Shadows, samples: u32) -> Self {
-        let target = zfail::Target { colors: &[Some(VERDICTS)], depth_stencil: gpu.depth_stencil, samples };
+    pub fn new(gpu: &Gpu, shadows: &zfail::Shadows, samples: u32, bits: bool) -> Self {
+        let colors: &[_] = if bits { &[Some(VERDICTS)] } else { &[] };
+        let target = zfail::Target { colors, depth_stencil: gpu.depth_stencil, samples };
         // Nothing to do where the count is 0. Elsewhere the count is reset for the next light.
         let face = wgpu::StencilFaceState {
             compare: wgpu::CompareFunction::NotEqual,
@@ -70,24 +73,25 @@ impl VerdictPass {
                     .screen(&gpu.device)
                 },
             );
-        Self { samples, depth: HashMap::new(), volumes: shadows.pipelines(&gpu.device, &target), keep }
+        Self { samples, bits, depth: HashMap::new(), volumes: shadows.pipelines(&gpu.device, &target), keep }
     }
 
     /// Makes the pipelines that the scene's solid draws lack.
     pub fn prepare(&mut self, gpu: &Gpu, layouts: &Layouts, scene: &SceneOnGpu) {
-        let samples = self.samples;
+        let (samples, bits) = (self.samples, self.bits);
         for draw in &scene.draws.solid {
             let key = key(scene.draws.parts[draw.part].look, draw);
-            self.depth.entry(key).or_insert_with(|| create(gpu, layouts, samples, key));
+            self.depth.entry(key).or_insert_with(|| create(gpu, layouts, samples, bits, key));
         }
     }
 
-    /// Fills verdicts, the first light's in the lowest bit of red, and depth; `timer` comes with the span of the pass. With
+    /// Fills depth and verdicts, the first light's in the lowest bit of red, or the only one's in the stencil; `timer` comes with the span of the pass. With
     /// `tiles`, the device and the depth for reading, lights that the tile pass counts are counted there.
     pub fn encode(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        [verdicts, depth_stencil]: [&wgpu::TextureView; 2],
+        verdicts: Option<&wgpu::TextureView>,
+        depth_stencil: &wgpu::TextureView,
         frame: &FrameData,
         scene: &SceneOnGpu,
         lights: impl Iterator<Item = Verdict>,
@@ -98,7 +102,7 @@ impl VerdictPass {
         let (begin, end) = (timestamps.clone(), timestamps.clone());
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("verdicts"),
-            color_attachments: &[cleared(verdicts, [0.0; 4])],
+            color_attachments: verdicts.map(|view| cleared(view, [0.0; 4])).as_slice(),
             depth_stencil_attachment: Some(cleared_depth(depth_stencil)),
             timestamp_writes: match tiles {
                 None => timestamps,
@@ -125,7 +129,7 @@ impl VerdictPass {
             scene.shadows.count_tiles(device, encoder, depth);
             pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("verdicts"),
-                color_attachments: &[continued(verdicts)],
+                color_attachments: verdicts.map(continued).as_slice(),
                 depth_stencil_attachment: Some(continued_depth(depth_stencil)),
                 timestamp_writes: end
                     .map(|t| wgpu::RenderPassTimestampWrites { beginning_of_pass_write_index: None, ..t }),
@@ -137,8 +141,10 @@ impl VerdictPass {
             if let Some(span) = light.span {
                 timer.0.stamp(&mut pass, span, false);
             }
-            if let Some([x, y, width, height]) = light.scissor {
+            if light.scissor.is_some() {
                 scene.shadows.draw(&mut pass, &self.volumes, light.light);
+            }
+            if let Some([x, y, width, height]) = light.scissor.filter(|_| self.bits) {
                 let within: Range<u32> = (bit % PER_CHANNEL) as u32..(bit % PER_CHANNEL) as u32 + 1;
                 pass.set_scissor_rect(x, y, width, height);
                 pass.set_stencil_reference(0);
@@ -160,19 +166,23 @@ fn key(look: Look, draw: &Draw) -> Key {
     (draw.mirrored, look.double_sided, (look.alpha == Alpha::Mask).then_some(look.textured[0]))
 }
 
-fn create(gpu: &Gpu, layouts: &Layouts, samples: u32, (mirrored, double_sided, mask): Key) -> wgpu::RenderPipeline {
+fn create(
+    gpu: &Gpu,
+    layouts: &Layouts,
+    samples: u32,
+    bits: bool,
+    (mirrored, double_sided, mask): Key,
+) -> wgpu::RenderPipeline {
     let constants = [("BASE_COLOR", f64::from(u8::from(mask == Some(true))))];
     let both = [&layouts.frame, &layouts.material];
+    let write_mask = wgpu::ColorWrites::empty();
+    let untouched = [Some(wgpu::ColorTargetState { format: VERDICTS, blend: None, write_mask })];
     let recipe = Recipe {
         program: if mask.is_some() { shader::CUTOUT } else { shader::DEPTH },
         entry: "depth",
         constants: if mask.is_some() { &constants } else { &[] },
         groups: if mask.is_some() { &both } else { &[] },
-        targets: &[Some(wgpu::ColorTargetState {
-            format: VERDICTS,
-            blend: None,
-            write_mask: wgpu::ColorWrites::empty(),
-        })],
+        targets: if bits { &untouched } else { &[] },
         depth_stencil: Some(depth_test(gpu.depth_stencil, wgpu::CompareFunction::GreaterEqual, true)),
         samples,
     };

@@ -48,10 +48,13 @@ impl Shadow {
         }
     }
 
-    /// Whether all of `corners` lie in the shadow, up to what rounding to `f32` would hide.
+    /// Whether all of `corners` (relative to the eye) lie in the shadow, up to rounding.
     pub fn holds(&self, corners: &[DVec3; 8]) -> bool {
+        /// Corners this much out of the shadow, relative to their distance from the eye, are in it for all that the f32
+        /// arithmetic of a GPU can tell: flush surfaces must not fail for the rounding of their coordinates.
+        const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
         let reach = corners.iter().map(|c| c.abs().max_element()).fold(0.0, f64::max);
-        let tolerance = -1e-9 * reach;
+        let tolerance = -ROUNDING * reach;
         !self.planes.is_empty()
             && self.planes.iter().all(|plane| corners.iter().all(|c| plane.truncate().dot(*c) + plane.w >= tolerance))
     }

@@ -18,7 +18,9 @@ pub(super) struct Placed {
     object_from_world_directions: DMat3,
     /// Of what casts, object space; empty if nothing does.
     pub bounds: Bounds,
-    /// The box, corners as [`Bounds::corners`] orders them, grown by what rounding may move.
+    /// The box, corners as [`Bounds::corners`] orders them.
+    pub exact_corners: [DVec3; 8],
+    /// The same, grown by what rounding may move.
     pub corners: [DVec3; 8],
     /// Axis-parallel bounds of the corners.
     pub world: Bounds,
@@ -43,6 +45,7 @@ impl Placed {
             relative_from_object,
             object_from_world_directions: world_from_object.matrix3.inverse(),
             bounds,
+            exact_corners: [DVec3::ZERO; 8],
             corners: [DVec3::ZERO; 8],
             world: Bounds::EMPTY,
             center: DVec3::ZERO,
@@ -53,6 +56,7 @@ impl Placed {
         if !bounds.is_empty() {
             let margin = 1e-6 * (bounds.half() + bounds.center().abs());
             let grown = Bounds { min: bounds.min - margin, max: bounds.max + margin };
+            placed.exact_corners = bounds.corners().map(|c| relative_from_object.transform_point3(c));
             placed.corners = grown.corners().map(|c| relative_from_object.transform_point3(c));
             placed.world = Bounds::of(placed.corners);
             placed.center = relative_from_object.transform_point3(grown.center());

@@ -253,7 +253,7 @@ impl Planner {
         let mut kept = 0;
         for &(_, c) in &self.occluders {
             let caster = &placed[c];
-            if self.shadows[..kept].iter().any(|shadow| shadow.holds(&caster.corners)) {
+            if self.shadows[..kept].iter().any(|shadow| shadow.holds(&caster.exact_corners)) {
                 pairs[c].role = Role::Idle;
                 stats.cull(Culled::Occluded);
                 continue;
@@ -269,7 +269,7 @@ impl Planner {
         }
         for (c, (pair, caster)) in pairs.iter_mut().zip(placed).enumerate() {
             let itself = self.occluders.iter().any(|entry| entry.1 == c);
-            let occluded = |shadow: &Shadow| shadow.holds(&caster.corners);
+            let occluded = |shadow: &Shadow| shadow.holds(&caster.exact_corners);
             if pair.role != Role::Idle && !itself && self.shadows[..kept].iter().any(occluded) {
                 pair.role = Role::Idle;
                 stats.cull(Culled::Occluded);
