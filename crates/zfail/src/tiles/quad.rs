@@ -117,8 +117,9 @@ impl Sight {
         let det = pa.dot(across);
         // The quad is wound b, a, X(a): det(b, a, X(a)) is the negative of this.
         let front = det < 0.0;
-        let [ea, eb] = if pa.z > 0.0 && pb.z > 0.0 { [pa, pb].map(|p| self.snapped(p)) } else { [pa, pb] };
-        let edge = if front { eb.cross(ea) } else { ea.cross(eb) };
+        // Where the quad begins, a rasteriser rounds the triangle that it continues to parts of a pixel. Following it there
+        // would tear the quad from its neighbours, whose common edges have to begin in the same point.
+        let edge = if front { pb.cross(pa) } else { pa.cross(pb) };
         let [to_a, to_b] = [pa.cross(xa), pb.cross(xb)].map(|f| self.unit(f));
         let [first, second] = if front { [to_a, to_b] } else { [to_b, to_a] };
         // On the quad's plane z is linear in x, y and w, so z/w is linear in x/w and y/w.
@@ -130,15 +131,6 @@ impl Sight {
             middle: functions.map(|f| f.z),
             weight: [if front { weight } else { -weight }, 0, 0, 0],
         })
-    }
-
-    /// A point before the eye where a rasteriser puts it, whose triangles at the silhouette the quad continues: on a grid
-    /// of 1/256 pixel.
-    fn snapped(&self, p: DVec3) -> DVec3 {
-        let scale = 0.5 * self.size;
-        let pixels = p.truncate() / p.z * scale + scale;
-        let pixels = (pixels * 256.0).round() / 256.0;
-        ((pixels - scale) / scale).extend(1.0)
     }
 
     /// A function of `(x, y, 1)` in normalised device coordinates as one of pixels from the middle of the image, y down.

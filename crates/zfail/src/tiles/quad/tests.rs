@@ -147,3 +147,30 @@ fn repeated_and_mirrored_sides_have_their_weight() {
     assert_eq!(weights(&[once, once].concat(), false), [2 * weight]);
     assert_eq!(weights(once, true), [-weight]);
 }
+
+/// A volume is closed only if all edges of a vertex run through one point. Rounding some of them to the rasteriser's grid once
+/// let light through at vertices of models, in the middle of their shadows.
+#[test]
+fn the_edges_of_a_quad_meet_in_its_corners() {
+    let mut random = Random(77);
+    let light = Vec4::new(0.3, 2.0, -3.0, 1.0);
+    let mut seen = 0;
+    for _ in 0..200 {
+        let points = [0; 2].map(|_: u32| DVec3::new(0.0, 0.0, -4.0) + random.vector(1.5));
+        let positions = points.map(|p| p.as_vec3().to_array());
+        sight().quads(&sides(&positions, side(light), light), |quad, _| {
+            for p in positions {
+                let p = DVec3::from(p.map(f64::from));
+                let c = view().clip_from_view() * p.extend(1.0);
+                let [u, v] = [160.0 * c.x / c.w, -100.0 * c.y / c.w];
+                let value =
+                    |i: usize| f64::from(quad.across[i]) * u + f64::from(quad.down[i]) * v + f64::from(quad.middle[i]);
+                // On the silhouette edge and on one of the others; in pixels.
+                assert!(value(0).abs() < 1e-4, "{} pixels beside the silhouette edge", value(0));
+                assert!(value(1).abs().min(value(2).abs()) < 1e-4, "{} and {}", value(1), value(2));
+            }
+            seen += 1;
+        });
+    }
+    assert!(seen > 100, "{seen} quads");
+}
