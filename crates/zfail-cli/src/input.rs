@@ -125,7 +125,7 @@ pub fn chain(error: &dyn std::error::Error) -> String {
 #[cfg(test)]
 mod tests {
     use super::lights;
-    use zfail_plan::scene::{Light, LightKind, Scene};
+    use zfail_plan::scene::{Light, LightKind, LightShape, Scene};
 
     #[test]
     fn lights_are_chosen_by_the_numbers_of_the_file() {
@@ -135,6 +135,7 @@ mod tests {
             color: [1.0; 3],
             intensity: 1.0,
             excluded: Vec::new(),
+            shape: LightShape::default(),
         };
         let scene = Scene { lights: vec![light; 3], ..Scene::default() };
         assert_eq!(lights(&scene, &[]), Ok(vec![0, 1, 2]));

@@ -5,7 +5,7 @@
 use crate::{kinds::Kind, shapes::Shape};
 use zfail_plan::{
     glam::{DAffine3, DMat3, DVec3},
-    scene::{AlphaMode, Instance, Light, LightKind, Material, Scene},
+    scene::{AlphaMode, Instance, Light, LightKind, LightShape, Material, Scene},
     view::{Projection, View},
 };
 
@@ -98,6 +98,7 @@ impl Recipe {
             color: [1.0; 3],
             intensity: 1.0,
             excluded: if i == 0 { excluded.clone() } else { Vec::new() },
+            shape: LightShape::default(),
         }));
         scene
     }

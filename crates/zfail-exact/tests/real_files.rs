@@ -10,7 +10,7 @@ use std::{env, path::PathBuf};
 use zfail_exact::bench::{self, Images};
 use zfail_exact::tally::Tally;
 use zfail_plan::glam::DVec3;
-use zfail_plan::scene::{Light, LightKind, Scene};
+use zfail_plan::scene::{Light, LightKind, LightShape, Scene};
 use zfail_render::{Gpu, GpuOptions, Settings, Technique, Tiles};
 
 /// Files without compression, skinned ones in rest pose.
@@ -55,7 +55,14 @@ fn test_lights(scene: &Scene) -> Vec<Light> {
     let direction = DVec3::new(-0.4, -0.8, -0.45).normalize();
     [point(at(0.13, 0.21, -0.17)), point(at(1.7, 2.3, 1.9)), LightKind::Directional { direction }]
         .into_iter()
-        .map(|kind| Light { name: "test".into(), kind, color: [1.0; 3], intensity: 10.0, excluded: Vec::new() })
+        .map(|kind| Light {
+            name: "test".into(),
+            kind,
+            color: [1.0; 3],
+            intensity: 10.0,
+            excluded: Vec::new(),
+            shape: LightShape::default(),
+        })
         .collect()
 }
 

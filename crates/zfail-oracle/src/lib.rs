@@ -82,8 +82,8 @@ impl Oracle {
     }
 
     fn source(&self, light: &Light) -> Source {
-        let mut kind = light.kind;
-        let apex = match &mut kind {
+        let mut light = light.clone();
+        let apex = match &mut light.kind {
             LightKind::Point { position, .. } | LightKind::Spot { position, .. } => {
                 *position -= self.soup.origin;
                 Apex::Point(*position)
@@ -91,6 +91,6 @@ impl Oracle {
             LightKind::Directional { direction } => Apex::Direction(*direction),
         };
         let excluded = (0..self.instances).map(|i| light.excluded.contains(&i)).collect();
-        Source { apex, kind, excluded }
+        Source { apex, light, excluded }
     }
 }

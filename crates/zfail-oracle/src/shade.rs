@@ -13,14 +13,14 @@ use crate::{
     soup::{Soup, Triangle},
 };
 use glam::DVec3;
-use zfail_plan::scene::LightKind;
+use zfail_plan::scene::{Light, LightKind};
 
 /// The light as the soup's frame sees it.
 #[derive(Clone, Debug)]
 pub(crate) struct Source {
     pub apex: Apex,
     /// With positions relative to the soup's origin.
-    pub kind: LightKind,
+    pub light: Light,
     /// Per instance: casts no shadow from this light.
     pub excluded: Vec<bool>,
 }
@@ -361,22 +361,23 @@ impl Shader<'_> {
         nominal.unwrap_or(certain)
     }
 
-    /// Whether the spot is within the light's range and cone, and the doubt about it.
+    /// Whether the spot is within the light's range, cone and box, and the doubt about it.
     fn reach(&self, spot: &Spot) -> (bool, Option<Doubt>) {
         let Slack { ellipse: [u, w], line, radius } = spot.slack;
         let wander = (u.length_squared() + w.length_squared()).sqrt() + line.length() + radius;
-        let (position, range) = match self.source.kind {
+        let (position, range) = match self.source.light.kind {
             LightKind::Directional { .. } => return (true, None),
             LightKind::Point { position, range } | LightKind::Spot { position, range, .. } => (position, range),
         };
         let to = spot.point - position;
         let distance = to.length();
         let mut near_border = (distance - range).abs() <= wander + 1e-5 * distance;
-        if let LightKind::Spot { direction, outer, .. } = self.source.kind {
+        if let LightKind::Spot { direction, outer, .. } = self.source.light.kind {
             let angle = to.cross(direction).length().atan2(to.dot(direction));
             near_border |= (angle - outer).abs() * distance <= wander + 1e-5 * distance;
         }
-        (self.source.kind.reaches(spot.point), near_border.then_some(Doubt::Reach))
+        near_border |= self.source.light.box_excess(spot.point).abs() <= wander + 1e-5 * distance;
+        (self.source.light.reaches(spot.point), near_border.then_some(Doubt::Reach))
     }
 
     fn casts_at(&self, triangle: &Triangle) -> bool {

@@ -99,9 +99,9 @@ pub fn of_ball(view: &View, center: DVec3, radius: f64) -> Option<Rectangle> {
         Projection::Perspective { yfov, .. } => {
             let scale_y = 1.0 / (0.5 * yfov).tan();
             let scale = [scale_y / view.aspect(), scale_y];
-            let limits = [at.x, at.y].map(|across| tangents(across, depth, radius, near));
-            for side in 0..2 {
-                extent.add_ndc([limits[0][side] * scale[0], limits[1][side] * scale[1]]);
+            let [across, up] = [at.x, at.y].map(|offset| tangents(offset, depth, radius, near));
+            for (x, y) in across.into_iter().zip(up) {
+                extent.add_ndc([x * scale[0], y * scale[1]]);
             }
         }
     }

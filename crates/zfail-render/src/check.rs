@@ -57,6 +57,16 @@ pub fn scene(scene: &Scene) -> Result<(), RenderError> {
         if let Some(e) = light.excluded.iter().find(|&&e| e >= scene.instances.len()) {
             return fail(format!("light {i} excludes instance {e}, which does not exist"));
         }
+        let shape = &light.shape;
+        for (part, problem) in [
+            ("falloff", shape.falloff_problem(&light.kind)),
+            ("cookie", shape.cookie_problem(&light.kind, scene.textures.len())),
+            ("box", shape.box_problem(&light.kind)),
+        ] {
+            if let Some(problem) = problem {
+                return fail(format!("light {i}: its {part} {problem}"));
+            }
+        }
     }
     Ok(())
 }
@@ -75,6 +85,9 @@ pub fn pose(pose: &Pose, instances: usize, lights: usize) -> Result<(), RenderEr
     }
     if let Some(l) = pose.lights.iter().position(|kind| !kind.homogeneous().is_finite()) {
         return fail(format!("a pose gives light {l} a place that is not finite"));
+    }
+    if let Some(l) = pose.light_axes.iter().position(|axes| !axes.is_finite()) {
+        return fail(format!("a pose gives light {l} axes that are not finite"));
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 
 use crate::draw_list::{Alpha, Draw, Look};
 use crate::frame::FrameData;
-use crate::gpu_data::UNROLLED;
+use crate::gpu_data::{LightRecord, UNROLLED};
 use crate::layouts::Layouts;
 use crate::pipeline::{ADD, Recipe, depth_test};
 use crate::scene::SceneOnGpu;
@@ -19,6 +19,8 @@ pub struct Step {
     pub developed: bool,
     /// Lights in use; all numbers that are not unrolled are the same.
     lights: u32,
+    /// Some light has a shape of its own.
+    shaped: bool,
     /// Where the verdicts are, and with them the depth.
     pub shadows: Shadows,
     /// Adds more lights to what an earlier step has drawn.
@@ -38,8 +40,9 @@ pub enum Shadows {
 }
 
 impl Step {
-    pub fn new(samples: u32, developed: bool, lights: usize, shadows: Shadows, added: bool) -> Self {
-        Self { samples, developed, lights: lights.min(UNROLLED + 1) as u32, shadows, added }
+    pub fn new(samples: u32, developed: bool, lights: &[LightRecord], shadows: Shadows, added: bool) -> Self {
+        let shaped = lights.iter().any(|light| light.shape != 0);
+        Self { samples, developed, lights: lights.len().min(UNROLLED + 1) as u32, shaped, shadows, added }
     }
 }
 
@@ -128,6 +131,7 @@ fn create(gpu: &Gpu, layouts: &Layouts, (look, mirrored, step): Key) -> Vec<wgpu
         ("OCCLUSION", occlusion),
         ("EMISSIVE", emissive),
         ("ROUGH", look.rough),
+        ("SHAPED", step.shaped),
         // Masked surfaces have been cut out by the depth pass already.
         ("ALPHA_MASK", look.alpha == Alpha::Mask && step.shadows == Shadows::None),
         ("BLEND", blend),

@@ -18,6 +18,8 @@ pub struct FrameData {
     lights: wgpu::Buffer,
     /// Indices of lights, the range of every instance after the other.
     lists: wgpu::Buffer,
+    /// What stays from frame to frame of the lights.
+    shapes: wgpu::Buffer,
     records: Vec<InstanceRecord>,
     listed: Vec<u32>,
 }
@@ -36,13 +38,14 @@ pub struct Shading<'a> {
 }
 
 impl FrameData {
-    pub fn new(gpu: &Gpu, layouts: &Layouts) -> Self {
+    pub fn new(gpu: &Gpu, layouts: &Layouts, shapes: &wgpu::Buffer) -> Self {
         let uniform = buffer(gpu, "frame", wgpu::BufferUsages::UNIFORM, size_of::<FrameUniform>() as u64);
         let lights = buffer(gpu, "lights", wgpu::BufferUsages::STORAGE, size_of::<LightRecord>() as u64);
         let lists = buffer(gpu, "lists of lights", wgpu::BufferUsages::STORAGE, 4);
         let instances = buffer(gpu, "instances", wgpu::BufferUsages::VERTEX, size_of::<InstanceRecord>() as u64);
-        let bind_group = group(gpu, layouts, &uniform, &lights, &lists);
-        Self { bind_group, instances, uniform, lights, lists, records: Vec::new(), listed: Vec::new() }
+        let bind_group = group(gpu, layouts, [&uniform, &lights, &lists, shapes]);
+        let shapes = shapes.clone();
+        Self { bind_group, instances, uniform, lights, lists, shapes, records: Vec::new(), listed: Vec::new() }
     }
 
     /// Uploads view, lights and, in their order, instances.
@@ -90,7 +93,7 @@ impl FrameData {
         ];
         write(gpu, &mut self.instances, "instances", wgpu::BufferUsages::VERTEX, &self.records)?;
         if grown.contains(&true) {
-            self.bind_group = group(gpu, layouts, &self.uniform, &self.lights, &self.lists);
+            self.bind_group = group(gpu, layouts, [&self.uniform, &self.lights, &self.lists, &self.shapes]);
         }
         Ok(())
     }
@@ -148,14 +151,8 @@ fn buffer(gpu: &Gpu, label: &str, usage: wgpu::BufferUsages, size: u64) -> wgpu:
     })
 }
 
-fn group(
-    gpu: &Gpu,
-    layouts: &Layouts,
-    uniform: &wgpu::Buffer,
-    lights: &wgpu::Buffer,
-    lists: &wgpu::Buffer,
-) -> wgpu::BindGroup {
-    bind(&gpu.device, "frame", &layouts.frame, &[uniform, lights, lists].map(wgpu::Buffer::as_entire_binding))
+fn group(gpu: &Gpu, layouts: &Layouts, buffers: [&wgpu::Buffer; 4]) -> wgpu::BindGroup {
+    bind(&gpu.device, "frame", &layouts.frame, &buffers.map(wgpu::Buffer::as_entire_binding))
 }
 
 #[cfg(test)]

@@ -71,5 +71,10 @@ pub struct LightRecord {
     pub cos_outer: f32,
     pub angle_scale: f32,
     pub angle_offset: f32,
+    /// Into the buffer of [`crate::shapes::Shapes`]; 0 for a plain light.
+    pub shape: u32,
+    pub right: [f32; 3],
+    pub cot_outer: f32,
+    pub up: [f32; 3],
     pub pad: u32,
 }

@@ -31,6 +31,7 @@ impl Layouts {
                     entry(0, fragment, uniform::<FrameUniform>()),
                     entry(1, fragment, storage::<LightRecord>()),
                     entry(2, fragment, storage::<u32>()),
+                    entry(3, fragment, storage::<u32>()),
                 ],
             ),
             material: create("material", &material),

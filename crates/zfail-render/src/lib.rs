@@ -32,6 +32,7 @@ mod scene;
 mod settings;
 mod shader;
 mod shadow_pass;
+mod shapes;
 mod srgb;
 mod stats;
 mod targets;

@@ -6,37 +6,44 @@ use zfail_plan::scene::{Bounds, Light, LightKind};
 use zfail_plan::scissor;
 use zfail_plan::view::View;
 
-/// `light` in the space of `view`, its intensity multiplied by `pre_exposure`.
-pub fn record(light: &Light, view: &View, pre_exposure: f32) -> LightRecord {
+/// `light` in the space of `view`, its intensity multiplied by `pre_exposure`; `shape` is where its shape is.
+pub fn record(light: &Light, view: &View, pre_exposure: f32, shape: u32) -> LightRecord {
     let view_from_world = view.world_from_view.matrix3.transpose();
     let place = |p: DVec3| (view_from_world * (p - view.eye())).as_vec3().to_array();
     let turn = |d: DVec3| (view_from_world * d).as_vec3().to_array();
+    let axes = light.axes();
     let common = LightRecord {
         color: light.color.map(|c| c * light.intensity * pre_exposure),
         placed: 1.0,
         cos_outer: -1.0,
         angle_offset: 1.0,
+        axis: turn(-axes.z_axis),
+        shape,
+        right: turn(axes.x_axis),
+        up: turn(axes.y_axis),
         ..Default::default()
     };
     match light.kind {
         LightKind::Point { position, range } => {
             LightRecord { position: place(position), per_range: per_range(range), ..common }
         }
-        LightKind::Spot { position, direction, range, inner, outer } => {
+        LightKind::Spot { position, range, inner, outer, .. } => {
             // KHR_lights_punctual, "Inner and Outer Cone Angles".
             let angle_scale = 1.0 / (inner.cos() - outer.cos()).max(0.001);
             LightRecord {
                 position: place(position),
-                axis: turn(direction),
                 per_range: per_range(range),
                 sin_outer: outer.sin() as f32,
                 cos_outer: outer.cos() as f32,
                 angle_scale: angle_scale as f32,
                 angle_offset: (-outer.cos() * angle_scale) as f32,
+                cot_outer: outer.tan().recip() as f32,
                 ..common
             }
         }
-        LightKind::Directional { direction } => LightRecord { position: turn(-direction), placed: 0.0, ..common },
+        LightKind::Directional { direction } => {
+            LightRecord { position: turn(-direction), placed: 0.0, shape: 0, ..common }
+        }
     }
 }
 
@@ -78,7 +85,16 @@ pub fn effective(light: &Light, precision: &Precision) -> LightKind {
     let peak = f64::from(light.color.into_iter().fold(0.0, f32::max)) * f64::from(light.intensity);
     let share = precision.pre_exposure * precision.reflectance / precision.step;
     // Not a number where nothing is known: then the file's range stands.
-    let radius = (peak * share).sqrt();
+    let radius = match light.shape.falloff.len() {
+        0 => (peak * share).sqrt(),
+        samples => {
+            let is_dark = |&&sample: &&f32| f64::from(sample) * peak * share < 1.0;
+            let dark = light.shape.falloff.iter().rev().take_while(is_dark).count();
+            let end = (samples - dark.min(samples)).min(samples - 1) as f64 / (samples - 1).max(1) as f64;
+            light.kind.range().unwrap_or(f64::INFINITY) * if dark == samples { 0.0 } else { end }
+        }
+    };
+    let radius = radius.min(light.shape.half_extents.map_or(f64::INFINITY, DVec3::length));
     match light.kind {
         LightKind::Point { position, range } => LightKind::Point { position, range: range.min(radius) },
         LightKind::Spot { position, direction, range, inner, outer } => {
@@ -127,6 +143,7 @@ pub fn pre_exposure<'l>(lights: impl Iterator<Item = &'l Light>, bounds: &Bounds
             if bounds.is_empty() { reach } else { position.distance(bounds.center()).max(0.5 * reach) }
         };
         let falloff = match light.kind {
+            _ if !light.shape.falloff.is_empty() => light.shape.falloff.iter().copied().fold(0.0, f32::max).into(),
             LightKind::Point { position, .. } | LightKind::Spot { position, .. } => distance(position).powi(-2),
             LightKind::Directional { .. } => 1.0,
         };
@@ -143,10 +160,18 @@ pub fn pre_exposure<'l>(lights: impl Iterator<Item = &'l Light>, bounds: &Bounds
 #[cfg(test)]
 mod tests {
     use super::*;
+    use zfail_plan::scene::LightShape;
 
     fn sun(lux: f32) -> Light {
         let kind = LightKind::Directional { direction: DVec3::NEG_Y };
-        Light { name: String::new(), kind, color: [1.0; 3], intensity: lux, excluded: Vec::new() }
+        Light {
+            name: String::new(),
+            kind,
+            color: [1.0; 3],
+            intensity: lux,
+            excluded: Vec::new(),
+            shape: LightShape::default(),
+        }
     }
 
     #[test]
@@ -164,7 +189,14 @@ mod tests {
     fn light_ends_where_it_is_below_a_step() {
         let lamp = |intensity, range| {
             let kind = LightKind::Point { position: DVec3::ZERO, range };
-            Light { name: String::new(), kind, color: [0.5, 1.0, 0.0], intensity, excluded: Vec::new() }
+            Light {
+                name: String::new(),
+                kind,
+                color: [0.5, 1.0, 0.0],
+                intensity,
+                excluded: Vec::new(),
+                shape: LightShape::default(),
+            }
         };
         let reach = |light: &Light, precision: &Precision| match effective(light, precision) {
             LightKind::Point { range, .. } => range,
@@ -177,6 +209,18 @@ mod tests {
         assert_eq!(reach(&lamp(0.0, f64::INFINITY), &precision), 0.0);
         assert!(reach(&lamp(9.0, f64::INFINITY), &precision) > radius);
         assert_eq!(effective(&sun(1e-9), &precision), sun(1e-9).kind);
+
+        let curved = |falloff: &[f32]| {
+            let mut light = lamp(8.0, 12.0);
+            light.shape.falloff = falloff.to_vec();
+            reach(&light, &precision)
+        };
+        assert_eq!(curved(&[0.0, 1.0]), 12.0);
+        assert_eq!(curved(&[1.0, 0.5, 0.0, 0.0, 0.0]), 6.0, "light fades between its last sample and the next");
+        assert_eq!(curved(&[0.0, 1e-9, 0.0]), 0.0);
+        let mut boxed = lamp(8.0, 9.0);
+        boxed.shape.half_extents = Some(DVec3::new(2.0, 1.0, 2.0));
+        assert_eq!(reach(&boxed, &precision), 3.0);
     }
 
     #[test]

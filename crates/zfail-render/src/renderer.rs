@@ -15,7 +15,7 @@ use crate::shadow_pass::ShadowPass;
 use crate::stats::{FrameStats, LightFigures};
 use crate::targets::{Attributes, Targets};
 use crate::timing::Timer;
-use crate::verdict_pass::{self, Verdict, VerdictPass};
+use crate::verdict_pass::{self, Verdict, VerdictPass, VerdictTargets};
 use crate::{
     AovKind, Aovs, Exposure, Gpu, Picture, RenderError, Settings, attribute_outputs, lights, read_back, tone_map,
 };
@@ -70,10 +70,11 @@ impl<'g> Renderer<'g> {
     /// If the scene is inconsistent or the device runs out of memory.
     pub fn new(gpu: &'g Gpu, scene: &Scene) -> Result<Self, RenderError> {
         let layouts = Layouts::new(&gpu.device);
+        let scene = SceneOnGpu::new(gpu, &layouts, scene)?;
         Ok(Self {
             gpu,
-            scene: SceneOnGpu::new(gpu, &layouts, scene)?,
-            frame: FrameData::new(gpu, &layouts),
+            frame: FrameData::new(gpu, &layouts, &scene.shapes.buffer),
+            scene,
             layouts,
             forward: ForwardPass::default(),
             verdicts: HashMap::new(),
@@ -239,7 +240,7 @@ impl<'g> Renderer<'g> {
             (true, true) => Shadows::Stencil,
             (true, false) => Shadows::Bits,
         };
-        let step = Step::new(samples, finish == Finish::Forward, records.len(), shadows, added && part.solid);
+        let step = Step::new(samples, finish == Finish::Forward, &records, shadows, added && part.solid);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let depth_stencil = targets.depth_stencil.clone();
         if shadowed {
@@ -256,8 +257,8 @@ impl<'g> Renderer<'g> {
             let depth = targets.depth.clone().filter(|_| volumes.counts_tiles());
             let tiles = depth.as_ref().map(|depth| (&gpu.device, depth));
             let view = bits.then(|| targets.verdicts(gpu, layouts).view.clone());
-            let timer = (timer, Some(0));
-            pass.encode(&mut encoder, view.as_ref(), &depth_stencil, &self.frame, scene, verdicts, tiles, timer);
+            let targets = VerdictTargets { verdicts: view.as_ref(), depth_stencil: &depth_stencil, tiles };
+            pass.encode(&mut encoder, &targets, &self.frame, scene, verdicts, (timer, Some(0)));
         }
 
         let solid = scene.draws.solid.iter().filter(|_| part.solid);
@@ -386,9 +387,10 @@ impl Exposed {
     fn new(scene: &SceneOnGpu, chosen: &[usize], exposure: Exposure, view: &View) -> Self {
         let lit = chosen.iter().map(|&l| &scene.lights[l]);
         let constant = [scene.ambient, scene.background, scene.emission];
-        let pre_exposure = lights::pre_exposure(lit.clone(), &scene.bounds, &constant);
+        let pre_exposure = lights::pre_exposure(lit, &scene.bounds, &constant);
+        let record = |&l: &usize| lights::record(&scene.lights[l], view, pre_exposure, scene.shapes.of_light[l]);
         Self {
-            lights: lit.map(|light| lights::record(light, view, pre_exposure)).collect(),
+            lights: chosen.iter().map(record).collect(),
             ambient: scene.ambient.map(|c| c * pre_exposure),
             background: scene.background.map(|c| c * pre_exposure),
             pre_exposure,
@@ -483,7 +485,7 @@ mod tests {
     use super::*;
     use crate::GpuOptions;
     use zfail_plan::glam::{DAffine3, DVec3};
-    use zfail_plan::scene::{Instance, Light, Material, Mesh, Primitive};
+    use zfail_plan::scene::{Instance, Light, LightShape, Material, Mesh, Primitive};
     use zfail_plan::view::Projection;
 
     /// A triangle under more than one light, before a background.
@@ -502,6 +504,7 @@ mod tests {
             color: [1.0, 0.9, 0.7],
             intensity: 1.5,
             excluded: Vec::new(),
+            shape: LightShape::default(),
         };
         let instance =
             Instance { name: String::new(), mesh: 0, world_from_object: DAffine3::IDENTITY, casts_shadow: true };

@@ -3,6 +3,7 @@
 use crate::draw_list::DrawList;
 use crate::geometry::MeshBuffers;
 use crate::layouts::Layouts;
+use crate::shapes::Shapes;
 use crate::{Gpu, RenderError, Settings, check, materials};
 use zfail::{Caster, Counting, Frame, LightStats, ShadowLight, Shadows, Tiles};
 use zfail_plan::scene::{Bounds, Instance, Light, LightKind, Material, Mesh, Pose, Scene};
@@ -18,6 +19,7 @@ pub struct SceneOnGpu {
     pub draws: DrawList,
     pub instances: Vec<Instance>,
     pub lights: Vec<Light>,
+    pub shapes: Shapes,
     pub bounds: Bounds,
     /// Of every instance, world space.
     pub instance_bounds: Vec<Bounds>,
@@ -76,6 +78,7 @@ impl SceneOnGpu {
             draws: DrawList::new(scene),
             instances: scene.instances.clone(),
             lights: scene.lights.clone(),
+            shapes: Shapes::new(gpu, scene)?,
             bounds: Bounds::EMPTY,
             instance_bounds: Vec::new(),
             mesh_bounds: scene.meshes.iter().map(Mesh::bounds).collect(),
@@ -105,6 +108,9 @@ impl SceneOnGpu {
         }
         for (light, &kind) in self.lights.iter_mut().zip(&pose.lights) {
             light.kind = kind;
+        }
+        for (light, &axes) in self.lights.iter_mut().zip(&pose.light_axes) {
+            light.shape.axes = axes;
         }
         self.bound();
         Ok(())

@@ -20,7 +20,7 @@ macro_rules! forward {
         [forward!($vertex, "forward_open"), forward!($vertex, "forward_single"), forward!($vertex, "forward_multi")]
     };
     ($vertex:literal, $entry:literal) => {
-        program!($entry, "limits", "frame", "light", $vertex, "material", "tone_map", "shade", $entry)
+        program!($entry, "limits", "frame", "shape", "light", $vertex, "material", "tone_map", "shade", $entry)
     };
 }
 
@@ -29,7 +29,7 @@ pub const CUTOUT: Program = program!("cutout", "frame", "vertex_textured", "mate
 pub const VERDICT: Program = program!("verdict", "screen", "verdict");
 pub const DESCRIBE: Program =
     program!("describe", "limits", "frame", "octahedral", "vertex_mapped", "material", "describe");
-pub const MASK: Program = program!("mask", "limits", "frame", "reach", "attributes", "screen", "mask");
+pub const MASK: Program = program!("mask", "limits", "frame", "shape", "reach", "attributes", "screen", "mask");
 const FORWARD: [[Program; 3]; 3] = [forward!("vertex_plain"), forward!("vertex_textured"), forward!("vertex_mapped")];
 const METER: [Program; 2] = [program!("meter", "hdr_single", "meter"), program!("meter 4x", "hdr_multi", "meter")];
 const DEVELOP: [Program; 2] = [
@@ -157,7 +157,21 @@ mod tests {
             shade,
             "Light",
             LightRecord,
-            [position, placed, axis, per_range, color, sin_outer, cos_outer, angle_scale, angle_offset]
+            [
+                position,
+                placed,
+                axis,
+                per_range,
+                color,
+                sin_outer,
+                cos_outer,
+                angle_scale,
+                angle_offset,
+                shape,
+                right,
+                cot_outer,
+                up
+            ]
         );
     }
 }

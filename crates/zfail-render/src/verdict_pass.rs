@@ -33,6 +33,15 @@ pub struct VerdictPass {
     keep: [wgpu::RenderPipeline; 4],
 }
 
+/// What the pass draws to.
+pub struct VerdictTargets<'a> {
+    /// For bits.
+    pub verdicts: Option<&'a wgpu::TextureView>,
+    pub depth_stencil: &'a wgpu::TextureView,
+    /// The device and the depth for reading, if lights are counted by tiles.
+    pub tiles: Option<(&'a wgpu::Device, &'a wgpu::TextureView)>,
+}
+
 /// One light of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct Verdict {
@@ -85,19 +94,18 @@ impl VerdictPass {
         }
     }
 
-    /// Fills depth and verdicts, the first light's in the lowest bit of red, or the only one's in the stencil; `timer` comes with the span of the pass. With
-    /// `tiles`, the device and the depth for reading, lights that the tile pass counts are counted there.
+    /// Fills depth and verdicts, the first light's in the lowest bit of red, or the only one's in the stencil; `timer` comes
+    /// with the span of the pass.
     pub fn encode(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        verdicts: Option<&wgpu::TextureView>,
-        depth_stencil: &wgpu::TextureView,
+        targets: &VerdictTargets<'_>,
         frame: &FrameData,
         scene: &SceneOnGpu,
         lights: impl Iterator<Item = Verdict>,
-        tiles: Option<(&wgpu::Device, &wgpu::TextureView)>,
         timer: (&Timer, Option<usize>),
     ) {
+        let &VerdictTargets { verdicts, depth_stencil, tiles } = targets;
         let timestamps = timer.1.and_then(|span| timer.0.pass(span));
         let (begin, end) = (timestamps.clone(), timestamps.clone());
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

@@ -264,7 +264,7 @@ fn a_pose_moves_what_a_new_renderer_would_show() {
     let pose = |s: &Scene| Pose {
         instances: s.instances.iter().map(|i| i.world_from_object).collect(),
         lights: s.lights.iter().map(|l| l.kind).collect(),
-        cameras: Vec::new(),
+        ..Pose::default()
     };
     let mut renderer = Renderer::new(&gpu, &scene).expect("a renderer");
     let before = renderer.picture(&view, &plain()).expect("a picture").0;

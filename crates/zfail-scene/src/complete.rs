@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 use std::f64::consts::PI;
-use zfail_plan::scene::{Bounds, Camera, Light, LightKind, Scene, world_triangle};
+use zfail_plan::scene::{Bounds, Camera, Light, LightKind, LightShape, Scene, world_triangle};
 use zfail_plan::view::Projection;
 
 /// Adds what is missing: a camera that frames the scene, a directional light (with a notice), ambient light and
@@ -67,6 +67,7 @@ fn default_light(camera: &Camera) -> Light {
         // Gives a white surface the radiance 1, which is also what emissive factors are relative to.
         intensity: std::f32::consts::PI,
         excluded: Vec::new(),
+        shape: LightShape::default(),
     }
 }
 
@@ -98,14 +99,16 @@ fn irradiance(lights: &[Light], point: DVec3, normal: DVec3) -> f64 {
     let from = |light: &Light| {
         let luminance = glam::Vec3::from(light.color).dot(glam::Vec3::new(0.2126, 0.7152, 0.0722));
         let strength = f64::from(light.intensity * luminance);
-        if !light.kind.reaches(point) {
+        if !light.reaches(point) {
             return 0.0;
         }
         match light.kind {
             LightKind::Directional { direction } => strength * normal.dot(direction).abs(),
-            LightKind::Point { position, .. } | LightKind::Spot { position, .. } => {
+            LightKind::Point { position, range } | LightKind::Spot { position, range, .. } => {
                 let to = position - point;
-                strength * normal.dot(to).abs() / to.length().powi(3)
+                let distance = to.length();
+                let falloff = light.shape.falloff_at(distance / range).unwrap_or_else(|| distance.powi(-2));
+                strength * falloff * normal.dot(to).abs() / distance
             }
         }
     };
@@ -163,7 +166,14 @@ mod tests {
         let ambient = |intensity: f32| {
             let mut scene = floor(1.0);
             let kind = LightKind::Point { position: DVec3::Y, range: f64::INFINITY };
-            scene.lights = vec![Light { name: String::new(), kind, color: [1.0; 3], intensity, excluded: Vec::new() }];
+            scene.lights = vec![Light {
+                name: String::new(),
+                kind,
+                color: [1.0; 3],
+                intensity,
+                excluded: Vec::new(),
+                shape: LightShape::default(),
+            }];
             complete(&mut scene);
             scene.ambient[0]
         };

@@ -4,7 +4,7 @@
 //! that puts them back, so that a light brought into object space keeps all its digits wherever the mesh stands.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
-use zfail_plan::scene::{Bounds, LightKind, Mesh};
+use zfail_plan::scene::{Bounds, Light, LightKind, Mesh};
 
 /// What a linear map does to volumes, judged relative to its own scale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -179,14 +179,16 @@ pub(crate) fn rigid(m: &DAffine3) -> DAffine3 {
     DAffine3 { matrix3: DMat3::from_cols(up.cross(back), up, back), translation: m.translation }
 }
 
-/// Where a light's node stands; it shines along its -z axis.
-pub(crate) fn light_placement(kind: &LightKind) -> DAffine3 {
-    let (translation, direction) = match *kind {
+/// Where a light's node stands; it shines along its -z axis, and +y is up where that matters.
+pub(crate) fn light_placement(light: &Light) -> DAffine3 {
+    let (translation, direction) = match light.kind {
         LightKind::Point { position, .. } => (position, DVec3::NEG_Z),
         LightKind::Spot { position, direction, .. } => (position, direction),
         LightKind::Directional { direction } => (DVec3::ZERO, direction),
     };
-    let matrix3 = if direction == DVec3::NEG_Z {
+    let matrix3 = if !light.shape.is_plain() {
+        light.axes()
+    } else if direction == DVec3::NEG_Z {
         DMat3::IDENTITY
     } else {
         let (x, y) = direction.any_orthonormal_pair();

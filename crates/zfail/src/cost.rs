@@ -66,7 +66,7 @@ fn measure_disc(device: &Device, queue: &Queue, spokes: u32) -> Option<(f64, f64
     // A jagged disc before a light behind it: its sides fan out over the whole image, which shows nothing but them.
     let rim = |i: u32| {
         let turn = std::f64::consts::TAU * f64::from(i) / f64::from(spokes);
-        let radius = if i % 2 == 0 { 0.05 } else { 0.06 };
+        let radius = if i.is_multiple_of(2) { 0.05 } else { 0.06 };
         DVec3::new(radius * turn.cos(), radius * turn.sin(), 0.0).as_vec3().to_array()
     };
     let positions: Vec<[f32; 3]> = (0..spokes).map(rim).chain([[0.0; 3]]).collect();

@@ -85,7 +85,7 @@ fn scene(seed: u64) -> (View, Vec<(Soup, DAffine3)>, LightKind) {
     let back = (eye - random.vector(2.0)).normalize();
     let right = back.any_orthonormal_vector();
     let place = DAffine3 { matrix3: DMat3::from_cols(right, back.cross(right), back), translation: eye };
-    if seed % 5 == 0 {
+    if seed.is_multiple_of(5) {
         // Something large right over the eye.
         let above = DAffine3::from_translation(eye + DVec3::Y * 0.4) * DAffine3::from_rotation_x(0.1);
         things.push((cuboid(DVec3::new(6.0, 0.05, 6.0)), above));
@@ -223,7 +223,7 @@ fn every_step_taken_wrongly_is_noticed() {
             }
         }),
         ("sides culled", Technique::Auto, |plan| {
-            plan.draws.iter_mut().for_each(|draw| draw.volume.sides.end = draw.volume.sides.start)
+            plan.draws.iter_mut().for_each(|draw| draw.volume.sides.end = draw.volume.sides.start);
         }),
         ("dark caps culled", Technique::Mcguire, |plan| {
             plan.draws.iter_mut().for_each(|draw| draw.volume.dark_cap.end = draw.volume.dark_cap.start);

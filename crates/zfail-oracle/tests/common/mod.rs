@@ -3,7 +3,7 @@
 
 use zfail_plan::{
     glam::{DAffine3, DMat3, DVec3},
-    scene::{Instance, Light, LightKind, Material, Mesh, Primitive, Scene},
+    scene::{Instance, Light, LightKind, LightShape, Material, Mesh, Primitive, Scene},
     view::{Projection, View},
 };
 
@@ -84,7 +84,14 @@ pub fn scene(parts: Vec<(Mesh, DAffine3)>, light: LightKind) -> Scene {
         scene.meshes.push(mesh);
         scene.instances.push(instance);
     }
-    let light = Light { name: String::new(), kind: light, color: [1.0; 3], intensity: 1.0, excluded: Vec::new() };
+    let light = Light {
+        name: String::new(),
+        kind: light,
+        color: [1.0; 3],
+        intensity: 1.0,
+        excluded: Vec::new(),
+        shape: LightShape::default(),
+    };
     scene.lights.push(light);
     scene
 }

@@ -223,7 +223,7 @@ impl Pair {
     fn wanted(&self, topology: &Topology) -> Parts {
         let Role::Active { parts, z_pass, .. } = self.role else { return Parts::default() };
         // Counting in front, covered triangles never count, and infinity neither.
-        let hidden = z_pass && !self.start.within_solid && topology.parts.iter().all(|part| is_covered(part));
+        let hidden = z_pass && !self.start.within_solid && topology.parts.iter().all(is_covered);
         Parts { sides: true, dark_cap: parts.dark_cap && !z_pass, light_cap: parts.light_cap && !hidden }
     }
 

@@ -9,7 +9,7 @@ mod mesh;
 mod pose;
 
 pub use bounds::Bounds;
-pub use light::{Light, LightKind};
+pub use light::{Light, LightKind, LightShape};
 pub use material::{AlphaMode, Filter, Image, Material, Texture, TextureRef, Wrap};
 pub use mesh::{Mesh, Primitive};
 pub use pose::Pose;

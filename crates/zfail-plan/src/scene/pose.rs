@@ -3,7 +3,7 @@
 //! In: placements by index. Out: the same placements in a [`Scene`].
 
 use super::{LightKind, Scene};
-use glam::DAffine3;
+use glam::{DAffine3, DMat3};
 
 /// Where everything is that an animation can move; each list has the indices of the [`Scene`] that it belongs to.
 ///
@@ -14,6 +14,8 @@ pub struct Pose {
     pub instances: Vec<DAffine3>,
     /// Per light, its placement and reach.
     pub lights: Vec<LightKind>,
+    /// Per light, world from its own space: [`super::LightShape::axes`].
+    pub light_axes: Vec<DMat3>,
     /// Per camera, view to world: rotation and translation only.
     pub cameras: Vec<DAffine3>,
 }
@@ -33,6 +35,8 @@ impl Pose {
         self.instances.extend(scene.instances.iter().map(|instance| instance.world_from_object));
         self.lights.clear();
         self.lights.extend(scene.lights.iter().map(|light| light.kind));
+        self.light_axes.clear();
+        self.light_axes.extend(scene.lights.iter().map(|light| light.shape.axes));
         self.cameras.clear();
         self.cameras.extend(scene.cameras.iter().map(|camera| camera.world_from_view));
     }
@@ -46,6 +50,9 @@ impl Scene {
         }
         for (light, kind) in self.lights.iter_mut().zip(&pose.lights) {
             light.kind = *kind;
+        }
+        for (light, axes) in self.lights.iter_mut().zip(&pose.light_axes) {
+            light.shape.axes = *axes;
         }
         for (camera, world_from_view) in self.cameras.iter_mut().zip(&pose.cameras) {
             camera.world_from_view = *world_from_view;

@@ -17,6 +17,13 @@ struct Light {
     // Falloff from the inner to the outer angle, as KHR_lights_punctual defines it: 0 and 1 where there is no cone.
     angle_scale: f32,
     angle_offset: f32,
+    // Where the light's shape begins in `shapes`; 0 for a plain light.
+    shape: u32,
+    // View space, unit, perpendicular to each other and the axis: how the light is turned.
+    right: vec3<f32>,
+    // Cotangent of the cone's half angle.
+    cot_outer: f32,
+    up: vec3<f32>,
 }
 
 struct Frame {

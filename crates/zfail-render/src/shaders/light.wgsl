@@ -3,6 +3,8 @@
 
 // The material is perfectly rough: the microfacet distribution is constant.
 override ROUGH: bool = false;
+// Some light has a shape of its own.
+override SHAPED: bool = false;
 
 const PI: f32 = 3.14159265358979;
 
@@ -47,7 +49,18 @@ fn reflected(light: Light, s: Surface, position: vec3<f32>, eye: vec3<f32>) -> v
     let relative_squared = distance_squared * light.per_range * light.per_range;
     let window = clamp(1.0 - relative_squared * relative_squared, 0.0, 1.0);
     let cone = clamp(light.angle_offset - dot(light.axis, direction) * light.angle_scale, 0.0, 1.0);
-    let share = window * cone * cone * per_distance * per_distance;
+    var share = window * cone * cone * per_distance * per_distance;
+    var color = light.color;
+    if SHAPED && light.shape != 0u {
+        let physical = window * per_distance * per_distance;
+        share = cone * cone * falloff(light, distance_squared * per_distance, physical);
+        if !within_box(light, -to_light) {
+            share = 0.0;
+        }
+        if share > 0.0 {
+            color *= cookie(light, -to_light, s.position_dx, s.position_dy);
+        }
+    }
     let faces = dot(s.geometric_normal, direction) > 0.0;
-    return light.color * reflectance(s, eye, direction) * select(0.0, share, faces);
+    return color * reflectance(s, eye, direction) * select(0.0, share, faces);
 }

@@ -44,6 +44,9 @@ struct Surface {
     normal: vec3<f32>,
     // View space, of any length: the triangle's own, on the side of the eye.
     geometric_normal: vec3<f32>,
+    // View space: from pixel to pixel.
+    position_dx: vec3<f32>,
+    position_dy: vec3<f32>,
 }
 
 fn slot_uv(slot: Slot, uv: vec4<f32>) -> vec2<f32> {
@@ -107,6 +110,8 @@ fn surface(in: Fragment, front: bool, eye: vec3<f32>) -> Surface {
     out.roughness = clamp(metallic_roughness.y, 0.0, 1.0);
     out.occlusion = occlusion;
     out.emissive = emissive * frame.pre_exposure;
+    out.position_dx = position_dx;
+    out.position_dy = position_dy;
     out.geometric_normal = select(-flat_normal, flat_normal, dot(flat_normal, eye) >= 0.0);
 
     let side = select(-1.0, 1.0, front);

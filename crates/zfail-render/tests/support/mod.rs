@@ -4,7 +4,9 @@
 #![allow(dead_code)]
 
 use zfail_render::zfail_plan::glam::{DAffine3, DMat3, DVec3};
-use zfail_render::zfail_plan::scene::{AlphaMode, Instance, Light, LightKind, Material, Mesh, Primitive, Scene};
+use zfail_render::zfail_plan::scene::{
+    AlphaMode, Instance, Light, LightKind, LightShape, Material, Mesh, Primitive, Scene,
+};
 use zfail_render::zfail_plan::view::{Projection, View};
 use zfail_render::{Exposure, Gpu, GpuOptions, Picture, Renderer, Settings};
 
@@ -68,7 +70,7 @@ pub fn wall(material: Material) -> Scene {
 }
 
 pub fn light(kind: LightKind, intensity: f32) -> Light {
-    Light { name: String::new(), kind, color: [1.0; 3], intensity, excluded: Vec::new() }
+    Light { name: String::new(), kind, color: [1.0; 3], intensity, excluded: Vec::new(), shape: LightShape::default() }
 }
 
 pub fn sun(direction: DVec3, lux: f32) -> Light {

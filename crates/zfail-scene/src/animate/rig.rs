@@ -148,7 +148,11 @@ impl Rig {
         }
         for light in &self.lights {
             let Some(slot) = pose.lights.get_mut(light.index) else { continue };
-            *slot = light.world_from_self(&world_from_node).map_or(light.rest, |world| placed(&light.rest, &world));
+            let world = light.world_from_self(&world_from_node);
+            *slot = world.map_or(light.rest, |world| placed(&light.rest, &world));
+            if let (Some(axes), Some(world)) = (pose.light_axes.get_mut(light.index), world) {
+                *axes = rigid(&world).matrix3;
+            }
         }
         for camera in &self.cameras {
             let Some(slot) = pose.cameras.get_mut(camera.index) else { continue };

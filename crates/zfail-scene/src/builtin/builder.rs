@@ -4,7 +4,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 use zfail_plan::scene::{
-    Camera, Filter, Image, Instance, Light, LightKind, Material, Mesh, Scene, Texture, TextureRef, Wrap,
+    Camera, Filter, Image, Instance, Light, LightKind, LightShape, Material, Mesh, Scene, Texture, TextureRef, Wrap,
 };
 use zfail_plan::view::Projection;
 
@@ -105,7 +105,14 @@ impl SceneBuilder {
 
     /// Adds a light; `color` is sRGB `0xRRGGBB`, `intensity` candela or lux.
     pub fn light(&mut self, name: &str, kind: LightKind, color: u32, intensity: f32) {
-        let light = Light { name: name.to_owned(), kind, color: linear(color), intensity, excluded: Vec::new() };
+        let light = Light {
+            name: name.to_owned(),
+            kind,
+            color: linear(color),
+            intensity,
+            excluded: Vec::new(),
+            shape: LightShape::default(),
+        };
         self.0.lights.push(light);
     }
 

@@ -61,7 +61,7 @@ pub(super) fn animated(scene: Scene) -> Animated {
             rig.carry_instance(i, node, place, &bounds, instance.world_from_object);
         }
         for (i, light) in scene.lights.iter().enumerate().filter(|(_, it)| it.name == turn.name) {
-            let (node, place) = hang(&mut rig, light_placement(&light.kind));
+            let (node, place) = hang(&mut rig, light_placement(light));
             rig.carry_light(i, node, place, light.kind);
         }
     }

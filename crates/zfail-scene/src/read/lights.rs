@@ -12,15 +12,16 @@ use rustc_hash::FxHashMap;
 use serde_json::Value;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
-use zfail_plan::scene::{Camera, Light, LightKind, Scene};
+use zfail_plan::scene::{Camera, Light, LightKind, LightShape, Scene};
 use zfail_plan::view::Projection;
 
 /// Adds the default scene's lights to `scene`, and hangs those that move on the rig; `held` are the instances at and
-/// below each visited node.
+/// below each visited node, `textures` the scene's by the document's index.
 pub(super) fn read_lights(
     root: &Root,
     graph: &Graph,
     held: &[Range<usize>],
+    textures: &[Option<usize>],
     budget: &Budget,
     motion: &mut Motion,
     scene: &mut Scene,
@@ -55,12 +56,17 @@ pub(super) fn read_lights(
         if let Some(rig_node) = motion.rig_node[visit.node] {
             motion.rig.carry_light(scene.lights.len(), rig_node, DAffine3::IDENTITY, kind);
         }
+        let element = format!("nodes[{}].extras", visit.node);
+        let mut shape = shape(&node.extras, &kind, textures, &element, &mut scene.notices);
+        budget.charge(shape.falloff.len() as u64, size_of::<f32>() as u64, || format!("{element}.falloff"))?;
+        shape.axes = rigid(&graph.world_from_node[visit.node]).matrix3;
         scene.lights.push(Light {
             name,
             kind,
             color: source.color.map(positive),
             intensity: positive(source.intensity),
             excluded,
+            shape,
         });
     }
     Ok(())
@@ -68,6 +74,63 @@ pub(super) fn read_lights(
 
 fn exclusions(extras: &Value) -> impl Iterator<Item = &str> {
     extras.get("shadowExclude").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str)
+}
+
+/// What a light's node says about its shape in `falloff`, `cookie` and `box`. Other programs may mean something else by
+/// these words, so what does not fit is no error: it becomes a notice and is left out.
+fn shape(
+    extras: &Value,
+    kind: &LightKind,
+    textures: &[Option<usize>],
+    element: &str,
+    notices: &mut Vec<String>,
+) -> LightShape {
+    let mut leave_out = |key: &str, problem: &str| notices.push(format!("{element}.{key} is left out: it {problem}"));
+    let mut shape = LightShape::default();
+    if let Some(value) = extras.get("falloff") {
+        match numbers(value) {
+            None => leave_out("falloff", "is no array of numbers"),
+            Some(samples) => {
+                shape.falloff = samples.into_iter().map(|x| x as f32).collect();
+                let problem = shape.falloff_problem(kind).or(shape.falloff.is_empty().then_some("is empty"));
+                if let Some(problem) = problem {
+                    shape.falloff.clear();
+                    leave_out("falloff", problem);
+                }
+            }
+        }
+    }
+    if let Some(value) = extras.get("cookie") {
+        match value.as_u64().map(|index| textures.get(index as usize)) {
+            None => leave_out("cookie", "is no index of a texture"),
+            Some(None) => leave_out("cookie", "refers to a texture that is not there"),
+            Some(Some(None)) => leave_out("cookie", "refers to a texture without a readable image"),
+            Some(Some(&Some(cookie))) => {
+                shape.cookie = Some(cookie);
+                if let Some(problem) = shape.cookie_problem(kind, usize::MAX) {
+                    shape.cookie = None;
+                    leave_out("cookie", problem);
+                }
+            }
+        }
+    }
+    if let Some(value) = extras.get("box") {
+        match numbers(value).and_then(|half| <[f64; 3]>::try_from(half).ok()) {
+            None => leave_out("box", "is no array of three numbers"),
+            Some(half) => {
+                shape.half_extents = Some(half.into());
+                if let Some(problem) = shape.box_problem(kind) {
+                    shape.half_extents = None;
+                    leave_out("box", problem);
+                }
+            }
+        }
+    }
+    shape
+}
+
+fn numbers(value: &Value) -> Option<Vec<f64>> {
+    value.as_array()?.iter().map(Value::as_f64).collect()
 }
 
 fn positive(x: f64) -> f32 {

@@ -23,6 +23,21 @@
 //! - While an animation flattens a mesh or makes it vanish, it keeps an invisible thickness, so that transforms stay
 //!   invertible; what an animation takes beyond 10^15 m stays at its place of rest meanwhile.
 //!
+//! # Extras
+//! What glTF has no word for, in the extras of nodes:
+//! - `castShadow`, a boolean: whether the meshes at and below the node block light, unless a node between says otherwise.
+//!
+//! And on the nodes of lights:
+//! - `shadowExclude`, an array of names: what is at and below nodes of these names casts no shadow from the light.
+//! - `falloff`, an array of two or more numbers, not negative: irradiance per intensity from the light to its range, which
+//!   must be given, at equal steps and linear between. It replaces the inverse-square law of a point or spot light.
+//! - `cookie`, the index of a texture whose colours (sRGB) a spot light projects, over the square around its outer cone,
+//!   upright as seen from the light: right is the node's +x, up its +y. A mirrored node does not mirror it.
+//! - `box`, three numbers above 0: half extents, in metres along the node's axes, of a box around the light beyond which a
+//!   point or spot light reaches nothing. As with the range, a node's scale does not change it.
+//!
+//! A value of the last three that does not fit is left out, with a notice: it may mean something else to its author.
+//!
 //! Everything else that breaks the specification and bears on the scene is an error.
 
 mod animations;
@@ -130,11 +145,11 @@ fn read(path: &Path, limits: &Limits) -> Result<(Animated, FileInfo)> {
     let document = Document::open(root, container.bin, folder, budget)?;
 
     let mut scene = Scene { name, notices, ..Scene::default() };
-    read_materials(&document, folder, &mut scene)?;
+    let textures = read_materials(&document, folder, &mut scene)?;
     let graph = Graph::new(&document.root, &mut scene.notices)?;
     let mut motion = animations::read(&document, &graph, &mut scene.notices)?;
     let held = instances::read(&document, &graph, &mut motion, &mut scene)?;
-    lights::read_lights(&document.root, &graph, &held, &document.budget, &mut motion, &mut scene)?;
+    lights::read_lights(&document.root, &graph, &held, &textures, &document.budget, &mut motion, &mut scene)?;
     lights::read_cameras(&document.root, &graph, &mut motion, &mut scene);
     read_surroundings(&document.root, &mut scene);
     if scene.instances.is_empty() {
@@ -162,7 +177,8 @@ fn parse(json: &[u8]) -> Result<Root> {
     Ok(root)
 }
 
-fn read_materials(document: &Document<'_>, folder: &Path, scene: &mut Scene) -> Result<()> {
+/// Returns the scene's textures by the document's index.
+fn read_materials(document: &Document<'_>, folder: &Path, scene: &mut Scene) -> Result<Vec<Option<usize>>> {
     let mut index = Vec::new();
     for image in images::read(document, folder, &mut scene.notices)? {
         index.push(image.map(|image| {
@@ -173,7 +189,7 @@ fn read_materials(document: &Document<'_>, folder: &Path, scene: &mut Scene) -> 
     let (textures, index) = materials::textures(&document.root, &index, &mut scene.notices);
     scene.textures = textures;
     scene.materials = materials::materials(&document.root, &index, &mut scene.notices);
-    Ok(())
+    Ok(index)
 }
 
 /// The ambient and background radiance that [`crate::write`] keeps in the scene's extras.

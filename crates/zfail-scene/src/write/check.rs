@@ -52,6 +52,15 @@ pub fn check(scene: &Scene) -> Result<()> {
         };
         require(finite && numbers, element, "is not finite")?;
         require(unit, element, "has a direction that is no unit vector")?;
+        let shape = &light.shape;
+        for (part, problem) in [
+            ("falloff", shape.falloff_problem(&light.kind)),
+            ("cookie", shape.cookie_problem(&light.kind, scene.textures.len())),
+            ("box", shape.box_problem(&light.kind)),
+        ] {
+            require(problem.is_none(), || format!("lights[{i}].{part}"), problem.unwrap_or_default())?;
+        }
+        require(shape.axes.is_finite(), element, "has axes that are not finite")?;
     }
     for (i, camera) in scene.cameras.iter().enumerate() {
         let sound = match camera.projection {

@@ -29,11 +29,20 @@ pub(super) fn write(document: &mut Document, scene: &Scene, mesh_of: &[Option<us
         node["extensions"] = json!({ "KHR_lights_punctual": { "light": document.lights.len() } });
         if !light.excluded.is_empty() {
             let excluded: Vec<&str> = light.excluded.iter().map(|&i| names[i].as_str()).collect();
-            node["extras"] = json!({ "shadowExclude": excluded });
+            node["extras"]["shadowExclude"] = json!(excluded);
+        }
+        if !light.shape.falloff.is_empty() {
+            node["extras"]["falloff"] = json!(light.shape.falloff);
+        }
+        if let Some(cookie) = light.shape.cookie {
+            node["extras"]["cookie"] = json!(cookie);
+        }
+        if let Some(half) = light.shape.half_extents {
+            node["extras"]["box"] = json!(half.to_array());
         }
         document.lights.push(light_json(light));
         document.extensions.insert("KHR_lights_punctual");
-        document.place(node, &light_placement(&light.kind));
+        document.place(node, &light_placement(light));
     }
     for camera in &scene.cameras {
         let (json, world_from_view) = camera_json(camera);

@@ -4,7 +4,8 @@ use super::{WriteError, check, to_glb};
 use crate::builtin::shapes::{cuboid, merged, painted, tinted, uv_sphere};
 use glam::{DAffine3, DMat3, DVec3};
 use zfail_plan::scene::{
-    AlphaMode, Camera, Filter, Image, Instance, Light, LightKind, Material, Mesh, Scene, Texture, TextureRef, Wrap,
+    AlphaMode, Camera, Filter, Image, Instance, Light, LightKind, LightShape, Material, Mesh, Scene, Texture,
+    TextureRef, Wrap,
 };
 use zfail_plan::view::Projection;
 
@@ -70,6 +71,7 @@ fn sampler() -> Scene {
         color: [1.0, 0.3, 0.7],
         intensity: 12.3,
         excluded,
+        shape: LightShape::default(),
     };
     let direction = DVec3::new(0.3, -0.5, 0.1).normalize();
     let position = DVec3::new(1e6, 2.0, 1.0 / 7.0);
@@ -78,6 +80,14 @@ fn sampler() -> Scene {
         world_from_view: DAffine3 { matrix3: DMat3::from_rotation_y(0.4), translation: position },
         projection,
     };
+    let falloff = LightShape { falloff: vec![1.0, 0.3, 0.0], ..LightShape::default() };
+    let projected = LightShape {
+        cookie: Some(1),
+        half_extents: Some(DVec3::new(1.0, 2.5, 1.0 / 3.0)),
+        axes: DMat3::from_rotation_x(0.7),
+        ..LightShape::default()
+    };
+    let shaped = |light: Light, shape| Light { shape, ..light };
     Scene {
         name: "scene".into(),
         meshes: vec![
@@ -99,6 +109,15 @@ fn sampler() -> Scene {
                 "spot",
                 LightKind::Spot { position, direction, range: f64::INFINITY, inner: 0.2, outer: 0.7 },
                 vec![],
+            ),
+            shaped(light("curved", LightKind::Point { position, range: 9.5 }, vec![2]), falloff),
+            shaped(
+                light(
+                    "projector",
+                    LightKind::Spot { position, direction, range: f64::INFINITY, inner: 0.2, outer: 0.7 },
+                    vec![],
+                ),
+                projected,
             ),
             light("sun", LightKind::Directional { direction }, vec![]),
         ],
@@ -169,6 +188,11 @@ fn assert_same(before: &Scene, after: &Scene, rounding: f64) {
     assert_eq!(after.lights.len(), before.lights.len());
     for (a, b) in after.lights.iter().zip(&before.lights) {
         assert_eq!((&a.name, a.color, a.intensity, &a.excluded), (&b.name, b.color, b.intensity, &b.excluded));
+        let parts = |shape: &LightShape| (shape.falloff.clone(), shape.cookie, shape.half_extents);
+        assert_eq!(parts(&a.shape), parts(&b.shape), "{}", a.name);
+        if !b.shape.is_plain() {
+            assert!(a.axes().abs_diff_eq(b.axes(), rounding), "{}: {} instead of {}", a.name, a.axes(), b.axes());
+        }
         let difference = (a.kind.homogeneous() - b.kind.homogeneous()).abs().max_element();
         assert!(difference <= rounding, "{:?} instead of {:?}", a.kind, b.kind);
         match (a.kind, b.kind) {
@@ -212,6 +236,16 @@ fn comparison_sees_a_single_bit() {
     let mut changed = reloaded(&scene);
     let x = &mut changed.meshes[0].positions[5][1];
     *x = x.next_up();
+    assert_same(&scene, &changed, 1e-15);
+}
+
+#[test]
+#[should_panic(expected = "projector")]
+fn comparison_sees_a_light_turned() {
+    let scene = sampler();
+    let mut changed = reloaded(&scene);
+    let axes = &mut changed.lights[3].shape.axes;
+    *axes *= DMat3::from_rotation_z(1e-9);
     assert_same(&scene, &changed, 1e-15);
 }
 
@@ -282,6 +316,10 @@ fn broken_scenes_are_named_and_not_written() {
     assert_eq!(broken(|s| s.instances[2].mesh = 3), "instances[2]");
     assert_eq!(broken(|s| s.instances[2].world_from_object.matrix3.x_axis = DVec3::ZERO), "instances[2]");
     assert_eq!(broken(|s| s.lights[0].excluded[0] = 3), "lights[0]");
+    assert_eq!(broken(|s| s.lights[2].shape.falloff.truncate(1)), "lights[2].falloff");
+    assert_eq!(broken(|s| s.lights[3].shape.cookie = Some(2)), "lights[3].cookie");
+    assert_eq!(broken(|s| s.lights[3].shape.half_extents = Some(DVec3::X)), "lights[3].box");
+    assert_eq!(broken(|s| s.lights[3].shape.axes.x_axis.x = f64::NAN), "lights[3]");
     assert_eq!(
         broken(|s| s.cameras[1].projection = Projection::Orthographic { ymag: 1.0, near: 2.0, far: 1.0 }),
         "cameras[1]"

@@ -186,6 +186,8 @@ fn lights_and_cameras_move_with_their_nodes() {
     let LightKind::Spot { position: at, direction, outer, .. } = pose.lights[1] else { panic!() };
     assert_eq!((at, outer), (position, 0.5));
     assert_near(direction, DVec3::NEG_X);
+    assert_near(pose.light_axes[1].x_axis, DVec3::NEG_Z);
+    assert_near(pose.light_axes[1].y_axis, DVec3::Y);
     assert_eq!(pose.lights[2], LightKind::Directional { direction: DVec3::NEG_Z });
     assert_eq!(pose.lights[3], animated.scene.lights[3].kind, "the same light on a node that stands still");
     assert_eq!(pose.cameras[0], DAffine3::from_translation(DVec3::new(15.0, 1.0, 0.0)), "rigid");

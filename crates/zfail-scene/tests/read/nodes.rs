@@ -7,6 +7,9 @@ use zfail_plan::glam::DVec3;
 use zfail_plan::scene::{LightKind, Scene, world_triangle};
 use zfail_plan::view::Projection;
 
+/// A PNG image of one pixel.
+const PIXEL: &str = "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==";
+
 fn with_nodes(nodes: Value) -> Gltf {
     let mut gltf = Gltf::triangle();
     gltf.json["nodes"] = nodes;
@@ -156,6 +159,53 @@ fn lights() {
     assert!(direction.distance(DVec3::NEG_Y) < 1e-12);
     with_lights(json!([{"extensions": light(3)}]))
         .fails_with("nodes[0].extensions.KHR_lights_punctual.light: refers to");
+}
+
+#[test]
+fn shapes_of_lights() {
+    let mut gltf = with_lights(json!([
+        {"extensions": light(1), "rotation": [0, 0, FRAC_1_SQRT_2, FRAC_1_SQRT_2], "scale": [3, 3, 3],
+            "extras": {"falloff": [1, 0.5, 0], "cookie": 1, "box": [1, 2, 3]}},
+        {"extensions": light(0), "extras": {"box": [4, 5, 6]}},
+        {"extensions": light(1), "extras": {"falloff": [1], "cookie": 2, "box": [1, 2]}},
+        {"extensions": light(1), "extras": {"falloff": [1, -1], "cookie": -1, "box": [1, 2, 0]}},
+        {"extensions": light(0), "extras": {"falloff": [1, 0], "cookie": 1}},
+        {"extensions": light(2), "extras": {"falloff": "smooth", "cookie": "gobo.png", "box": true}},
+        {"extensions": light(2), "extras": {"falloff": [], "cookie": 1, "box": [1, 1, 1]}},
+        {"extensions": light(1), "extras": {"cookie": 0}}
+    ]));
+    gltf.json["images"] = json!([{"uri": "data:image/png;base64,AAAA"}, {"uri": PIXEL}]);
+    gltf.json["textures"] = json!([{"source": 0}, {"source": 1}]);
+    let scene = gltf.scene();
+    assert_sound(&scene);
+    let shape = &scene.lights[0].shape;
+    // Texture 0 has no image and is not in the scene.
+    assert_eq!((&shape.falloff[..], shape.cookie), (&[1.0, 0.5, 0.0][..], Some(0)));
+    assert_eq!(shape.half_extents, Some(DVec3::new(1.0, 2.0, 3.0)), "a node's scale does not change a light");
+    assert!(shape.axes.y_axis.distance(DVec3::NEG_X) < 1e-12 && shape.axes.z_axis.distance(DVec3::Z) < 1e-12);
+    assert_eq!(scene.lights[1].shape.half_extents, Some(DVec3::new(4.0, 5.0, 6.0)));
+    assert!(scene.lights[2..].iter().all(|light| light.shape.is_plain()));
+    let notices: Vec<&str> = scene.notices.iter().filter_map(|n| n.strip_prefix("nodes[")).collect();
+    assert_eq!(
+        notices,
+        [
+            "2].extras.falloff is left out: it needs at least 2 samples",
+            "2].extras.cookie is left out: it refers to a texture that is not there",
+            "2].extras.box is left out: it is no array of three numbers",
+            "3].extras.falloff is left out: it needs samples that are finite and not negative",
+            "3].extras.cookie is left out: it is no index of a texture",
+            "3].extras.box is left out: it needs half extents that are finite and greater than 0",
+            "4].extras.falloff is left out: it needs a point or spot light with a finite range",
+            "4].extras.cookie is left out: it needs a spot light",
+            "5].extras.falloff is left out: it is no array of numbers",
+            "5].extras.cookie is left out: it is no index of a texture",
+            "5].extras.box is left out: it is no array of three numbers",
+            "6].extras.falloff is left out: it is empty",
+            "6].extras.cookie is left out: it needs a spot light",
+            "6].extras.box is left out: it needs a point or spot light",
+            "7].extras.cookie is left out: it refers to a texture without a readable image",
+        ]
+    );
 }
 
 #[test]
