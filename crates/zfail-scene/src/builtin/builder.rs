@@ -57,7 +57,8 @@ impl SceneBuilder {
         })
     }
 
-    fn texture(&mut self, image: Image) -> usize {
+    /// Adds an image as a texture that tiles.
+    pub fn texture(&mut self, image: Image) -> usize {
         self.0.images.push(image);
         self.0.textures.push(Texture {
             image: self.0.images.len() - 1,
@@ -135,6 +136,20 @@ impl SceneBuilder {
         let outer = outer.to_radians();
         let kind = LightKind::Spot { position, direction, range: f64::INFINITY, inner: 0.8 * outer, outer };
         self.light(name, kind, color, candela);
+    }
+
+    /// Gives the light added last a range and a shape; a spot light's picture stands upright.
+    pub fn shape(&mut self, to: f64, shape: LightShape) {
+        let Some(light) = self.0.lights.last_mut() else { return };
+        light.shape = shape;
+        match &mut light.kind {
+            LightKind::Point { range, .. } => *range = to,
+            LightKind::Spot { position, direction, range, .. } => {
+                *range = to;
+                light.shape.axes = looking_at(*position, *position + *direction).matrix3;
+            }
+            LightKind::Directional { .. } => {}
+        }
     }
 
     /// A material that glows with `radiance` times its colour.

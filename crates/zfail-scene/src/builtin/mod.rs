@@ -9,6 +9,7 @@ mod builder;
 mod cathedral;
 mod container;
 mod jail;
+mod lantern;
 mod motion;
 mod nested;
 mod open;
@@ -49,6 +50,10 @@ pub const SCENES: &[Entry] = &[
     entry("stacked", "1000 and 256 stacked sheets, more than 8 bits of stencil count (E&K section 4.1)"),
     entry("ortho", "A diorama under an orthographic camera, where infinity has no finite depth"),
     entry("stage", "Three coloured spot lights on dancing figures (McGuire et al., Image 7)"),
+    entry(
+        "lantern",
+        "A projected stained-glass window, falloff curves and a light in a box (McGuire et al. section 4)",
+    ),
 ];
 
 const fn entry(name: &'static str, description: &'static str) -> Entry {
@@ -71,6 +76,7 @@ pub fn scene(name: &str) -> Option<Scene> {
         "stacked" => stacked::scene(),
         "ortho" => ortho::scene(),
         "stage" => stage::scene(),
+        "lantern" => lantern::scene(),
         _ => return None,
     })
 }

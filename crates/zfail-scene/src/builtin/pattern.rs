@@ -123,6 +123,24 @@ pub(super) fn grass(name: &str, color: u32, dry: u32) -> Image {
     })
 }
 
+/// A pointed window of coloured panes, black around it: a picture to be projected.
+pub(super) fn window(name: &str) -> Image {
+    const GLASS: [u32; 6] = [0xffe9b8, 0xd8412f, 0x2f62c8, 0xf2b233, 0x3f9a58, 0xfff6e0];
+    image(name, |u, v| {
+        let (x, y) = ((u - 0.5) / 0.28, (v - 0.5) / 0.4);
+        // Two arcs that meet at the top.
+        let top = -0.1 - 0.9 * ((4.0 - (x.abs() + 1.0).powi(2)) / 3.0).max(0.0).sqrt();
+        if x.abs() > 1.0 || y > 1.0 || y < top {
+            return DVec3::ZERO;
+        }
+        let (column, row) = (2.0 * (x + 1.0), 3.0 * (y + 1.0));
+        let lead = joint(column, 0.05, 0.02) * joint(row, 0.05, 0.02);
+        let rim = ((1.0 - x.abs()).min(1.0 - y).min(y - top) / 0.05 - 0.6).clamp(0.0, 1.0);
+        let pane = (hash(column as u32, row as u32, 41) * GLASS.len() as f64) as usize;
+        srgb(GLASS[pane.min(GLASS.len() - 1)]) * (lead * rim)
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -81,6 +81,9 @@ fn scenes_hold_the_cases_that_they_are_for() {
     assert!(triangles.contains(&2000) && triangles.contains(&512));
     assert!(matches!(of("ortho").cameras[0].projection, Projection::Orthographic { .. }));
     assert!(of("stage").lights.iter().all(|l| matches!(l.kind, LightKind::Spot { .. })));
+    let lantern = of("lantern").lights;
+    assert!(lantern[0].shape.cookie.is_some() && lantern[1].shape.half_extents.is_some());
+    assert!(lantern.iter().all(|light| !light.shape.falloff.is_empty()));
     let mirrored = of("open").instances.iter().filter(|i| i.world_from_object.matrix3.determinant() < 0.0).count();
     assert_eq!(mirrored, 1);
 }
