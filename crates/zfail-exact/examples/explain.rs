@@ -1,4 +1,4 @@
-//! Why a random scene fails or is rejected: `explain KIND SEED [WxH]`.
+//! Why a random scene fails or is rejected: `explain KIND SEED [WxH]`. `ZFAIL_TECHNIQUE` names the technique.
 //!
 //! Prints, per light, figures and budget, the surroundings of wrong pixels, and how many of them larger guards leave.
 
@@ -20,7 +20,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("{recipe:?}");
     let gpu = Gpu::new(&GpuOptions::default())?;
     let scene = recipe.scene();
-    let images = bench::images(&gpu, &recipe, &Settings::default())?;
+    let technique = env::var("ZFAIL_TECHNIQUE").unwrap_or_default().parse().unwrap_or_default();
+    let images = bench::images(&gpu, &recipe, &Settings { technique, ..Settings::default() })?;
     for comparison in images.compare()? {
         let light = comparison.light;
         for (what, report) in [("mask", &comparison.mask), ("count", &comparison.count)] {
