@@ -101,7 +101,7 @@ fn one_light_of_a_shape_leaves_the_others_as_they_are() {
         at(&picture(&gpu, &scene, &look(DVec3::Z * 9.0, DVec3::ZERO, SIZE), &plain()), 16, 16)[0]
     };
     let (physical, curved) = (lamp(2.0, &[]), lamp(3.0, &[1.0, 0.5]));
-    let sum = render(&[physical.clone()]) + render(&[curved.clone()]);
+    let sum = render(std::slice::from_ref(&physical)) + render(std::slice::from_ref(&curved));
     let both = render(&[physical, curved]);
     assert!(close(both, sum.into(), TOLERANCE), "{both} is not {sum}");
 }
