@@ -5,7 +5,7 @@ mod common;
 use common::{at, cube, floor, point_light, scene, sphere};
 use zfail_oracle::{Cast, CastTable, Doubt, Oracle, Truth};
 use zfail_plan::{
-    glam::{DAffine3, DVec3},
+    glam::{DAffine3, DMat3, DVec3},
     scene::{AlphaMode, LightKind, Material, Mesh, Scene},
     view::{Projection, View},
 };
@@ -114,6 +114,28 @@ fn a_spot_reaches_a_disc_and_counts_stop_there() {
             assert_eq!(pixel.mask(), if reached { 255 } else { 0 });
         }
     }
+}
+
+#[test]
+fn a_light_in_a_box_reaches_no_farther() {
+    let mut scene = scene(vec![(floor(5.0), DAffine3::IDENTITY)], point_light(0.5, 3.0, 0.0));
+    let shape = &mut scene.lights[0].shape;
+    shape.half_extents = Some(DVec3::new(2.0, 3.5, 0.8));
+    shape.axes = DMat3::from_rotation_y(0.6);
+    let across = shape.axes.transpose();
+    let mut inside = 0;
+    for (i, pixel) in judge(&scene).pixels.iter().enumerate() {
+        let x = (f64::from(i as u32 % SIZE[0]) + 0.5 - 100.0) * 0.04;
+        let z = (f64::from(i as u32 / SIZE[0]) + 0.5 - 100.0) * 0.04;
+        let local = (across * DVec3::new(x - 0.5, 0.0, z)).abs();
+        if let Some(reached) = clear((local.x - 2.0).max(local.z - 0.8), 0.01) {
+            assert_eq!((pixel.reached, pixel.mask_doubt), (reached, None), "({x}, {z})");
+            inside += u32::from(reached);
+        }
+    }
+    assert!((3500..4500).contains(&inside), "{inside} pixels inside");
+    scene.lights[0].shape.half_extents = Some(DVec3::new(2.0, 2.5, 0.8));
+    assert!(judge(&scene).pixels.iter().all(|pixel| !pixel.reached), "the floor is below the box");
 }
 
 fn stack(count: u32) -> Scene {

@@ -88,10 +88,10 @@ pub fn effective(light: &Light, precision: &Precision) -> LightKind {
     let radius = match light.shape.falloff.len() {
         0 => (peak * share).sqrt(),
         samples => {
-            let is_dark = |&&sample: &&f32| f64::from(sample) * peak * share < 1.0;
+            let is_dark = |sample: &&f32| f64::from(**sample) * peak * share < 1.0;
             let dark = light.shape.falloff.iter().rev().take_while(is_dark).count();
-            let end = (samples - dark.min(samples)).min(samples - 1) as f64 / (samples - 1).max(1) as f64;
-            light.kind.range().unwrap_or(f64::INFINITY) * if dark == samples { 0.0 } else { end }
+            let last = (samples - dark).min(samples - 1);
+            light.kind.range().unwrap_or(f64::INFINITY) * (last as f64 / (samples - 1).max(1) as f64)
         }
     };
     let radius = radius.min(light.shape.half_extents.map_or(f64::INFINITY, DVec3::length));
