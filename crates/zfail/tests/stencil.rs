@@ -58,7 +58,8 @@ fn orthographic(world_from_view: DAffine3) -> View {
     View { world_from_view, projection: Projection::Orthographic { ymag: 3.0, near: 0.05, far: 20.0 }, size: SIZE }
 }
 
-/// A scene seen from a place that no volume reaches: the near rectangle lies towards the light from every caster.
+/// A scene of soups with the light outside or among them, seen from far outside along the light's direction, where the near
+/// rectangle is often lit; [`near_count`] tells.
 fn lit_eye(random: &mut Random, directional: bool, ortho: bool) -> (View, Vec<(Soup, DAffine3)>, LightKind) {
     let meshes = (0..3)
         .map(|_| {
@@ -74,8 +75,7 @@ fn lit_eye(random: &mut Random, directional: bool, ortho: bool) -> (View, Vec<(S
         LightKind::Point { position: outward * random.real(0.0, 1.5), range: f64::INFINITY }
     };
     // The light is at most 1.5 from the centre, casters reach at most 3.3: an eye beside the light would be shadowed
-    // where the light is among them, so a point light's test looks from far outside along its own direction and keeps
-    // only eyes whose near rectangle no caster hides.
+    // where the light is among them.
     let place = look_at(outward * 8.0 + random.vector(0.5), random.vector(0.5));
     (if ortho { orthographic(place) } else { perspective(place) }, meshes, light)
 }
