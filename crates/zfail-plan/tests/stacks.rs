@@ -147,3 +147,20 @@ fn bounds_without_extent_do_no_harm() {
     let cones = vec![stack::cone([DVec3::ZERO; 3], sun().homogeneous(), &frame); 5];
     assert!(!stack::is_within(&cones, &frame, 4));
 }
+
+#[test]
+fn a_change_in_the_number_of_lights_keeps_deep_stacks_divided() {
+    let topology = topologies(&[sheets(1000)]).remove(0);
+    let casters = [Caster { topology: &topology, mesh: 1, world_from_object: DAffine3::IDENTITY }];
+    let lights = [ShadowLight { kind: lamp(), excluded: &[] }, ShadowLight { kind: sun(), excluded: &[] }];
+    let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
+    let view = View { world_from_view: DAffine3::IDENTITY, projection, size: [64, 64] };
+    let mut planner = Planner::new();
+    for count in [1, 2, 1] {
+        let (lights, counting) = (&lights[..count], Counting::Verdict);
+        let measures = Technique::EverittKilgard.into();
+        let frame = Frame { view: &view, casters: &casters, lights, receivers: &[], measures, counting };
+        let batches = planner.plan(&frame).unwrap().lights[0].batches.len();
+        assert!(batches >= 1000 / 120, "{count} lights: {batches}");
+    }
+}

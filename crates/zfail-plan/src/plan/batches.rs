@@ -51,7 +51,10 @@ impl Batching {
             let active = pairs.iter().zip(placed).enumerate().filter(|(_, (pair, _))| active(pair));
             active.map(|(c, (_, placed))| (c as u32, placed.mesh, placed.world_from_object))
         };
-        if self.orthographic == orthographic && self.light == Some(kind) && self.key.iter().copied().eq(key()) {
+        // Pairs forget their batches with the weights they belong to.
+        let kept = !self.divided || pairs.iter().filter(|p| active(p)).all(|pair| !pair.batch_of.is_empty());
+        let same = self.orthographic == orthographic && self.light == Some(kind);
+        if kept && same && self.key.iter().copied().eq(key()) {
             if !self.divided {
                 pairs.iter_mut().for_each(Pair::unite);
             }
