@@ -2,33 +2,9 @@
 
 mod stage;
 
-use stage::{Setup, Soup, stencil};
+use stage::{Random, Setup, Soup, stencil};
 use zfail::glam::{DAffine3, DMat3, DQuat, DVec3};
 use zfail::{Counting, LightKind, Projection, View};
-
-/// Small deterministic random numbers (splitmix64).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        (self.next() % n as u64) as usize
-    }
-
-    fn real(&mut self, lo: f64, hi: f64) -> f64 {
-        lo + (hi - lo) * (self.next() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn vector(&mut self, extent: f64) -> DVec3 {
-        DVec3::new(self.real(-extent, extent), self.real(-extent, extent), self.real(-extent, extent))
-    }
-}
 
 /// Triangles over few shared vertices: every edge has many of them.
 fn soup(random: &mut Random) -> Soup {

@@ -2,12 +2,36 @@
 #![allow(dead_code, reason = "each test crate uses some of it")]
 
 use wgpu::util::DeviceExt;
-use zfail::glam::DAffine3;
+use zfail::glam::{DAffine3, DVec3};
 use zfail::{Bounds, Caster, Counting, Frame, FramePlan, LightKind, Measures, MeshId, ShadowLight, Shadows, Target};
 use zfail::{Technique, View};
 
 /// A mesh as tests write it.
 pub type Soup = (Vec<[f32; 3]>, Vec<[u32; 3]>);
+
+/// Small deterministic random numbers (splitmix64).
+pub struct Random(pub u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    pub fn below(&mut self, n: usize) -> usize {
+        (self.next() % n as u64) as usize
+    }
+
+    pub fn real(&mut self, lo: f64, hi: f64) -> f64 {
+        lo + (hi - lo) * (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    pub fn vector(&mut self, extent: f64) -> DVec3 {
+        DVec3::new(self.real(-extent, extent), self.real(-extent, extent), self.real(-extent, extent))
+    }
+}
 
 /// What one test varies.
 #[derive(Clone, Copy)]
