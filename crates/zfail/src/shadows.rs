@@ -128,12 +128,43 @@ impl Shadows {
         triangles: &[[u32; 3]],
         surface: impl Fn(usize) -> S,
     ) -> Result<MeshId, Error> {
-        let topology = Topology::new(positions, triangles, surface)?;
+        self.register(device, queue, Topology::new(positions, triangles, surface)?)
+    }
+
+    /// Registers a mesh whose vertices [`Self::move_vertices`] will move against each other, as skins and morph targets
+    /// do. As [`Self::add_mesh`], but vertices are welded where `alike`, a number per vertex, is equal: these must have
+    /// bit-equal positions whenever they are moved. Such a mesh casts from both sides of every triangle, closed or not.
+    ///
+    /// # Errors
+    /// As [`Self::add_mesh`], and if `alike` has another length than `positions`.
+    pub fn add_bending_mesh<S: Into<Surface>>(
+        &mut self,
+        device: &Device,
+        queue: &Queue,
+        positions: &[[f32; 3]],
+        triangles: &[[u32; 3]],
+        alike: &[u32],
+        surface: impl Fn(usize) -> S,
+    ) -> Result<MeshId, Error> {
+        self.register(device, queue, Topology::bending(positions, triangles, alike, surface)?)
+    }
+
+    fn register(&mut self, device: &Device, queue: &Queue, topology: Topology) -> Result<MeshId, Error> {
         let (slot, serial, moved) = self.arena.add(device, queue, topology)?;
         if moved {
             self.bindings = bind(device, &self.layout, &self.arena, &self.buffers);
         }
         Ok(MeshId { slot, serial })
+    }
+
+    /// Moves the vertices of a mesh made by [`Self::add_bending_mesh`]: the very positions that the depth pass will draw,
+    /// in the order in which they were registered. Silhouettes and bounds follow at the next [`Self::prepare`].
+    ///
+    /// # Errors
+    /// A mesh that is not registered or rigid, another number of positions, or coordinates that are not finite. Nothing
+    /// has moved then.
+    pub fn move_vertices(&mut self, queue: &Queue, mesh: MeshId, positions: &[[f32; 3]]) -> Result<(), Error> {
+        self.arena.move_vertices(queue, mesh.slot, mesh.serial, positions)
     }
 
     /// Forgets a mesh and gives back its topology; `None` if it is not registered here.
@@ -221,7 +252,7 @@ impl Shadows {
         for (c, caster) in frame.casters.iter().enumerate() {
             let mesh = self.arena.get(caster.mesh.slot, caster.mesh.serial).ok_or(Error::UnknownMesh { caster: c })?;
             let world_from_object = caster.world_from_object;
-            casters.push(plan::Caster { topology: &mesh.topology, mesh: mesh.serial, world_from_object });
+            casters.push(plan::Caster { topology: &mesh.topology, mesh: mesh.version, world_from_object });
         }
         let plan = self.planner.plan(&plan::Frame {
             view: frame.view,

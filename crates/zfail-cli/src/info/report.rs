@@ -205,6 +205,7 @@ impl PartReport {
             Shape::Solid { inside: 1.. } => ("single", "closed, facing outward"),
             Shape::Solid { .. } => ("single", "closed, facing inward"),
             Shape::SelfIntersecting => ("double", "closed, but it meets itself"),
+            Shape::Bending => ("double", "closed, but it bends"),
             Shape::Open => ("double", "it has a border, a fin or inconsistent winding"),
         };
         Self { triangles: part.triangles.len() as u32, casting, why }

@@ -12,7 +12,7 @@ pub use bounds::Bounds;
 pub use light::{Light, LightKind, LightShape};
 pub use material::{AlphaMode, Filter, Image, Material, Texture, TextureRef, Wrap};
 pub use mesh::{Mesh, Primitive};
-pub use pose::Pose;
+pub use pose::{BentMesh, Pose};
 
 use crate::topology::Surface;
 use crate::view::Projection;
