@@ -8,6 +8,7 @@ use crate::{Gpu, RenderError, Settings, check, materials};
 use glam::DVec3;
 use zfail::{Caster, Counting, Frame, LightStats, MeshId, ShadowLight, Shadows, Tiles};
 use zfail_plan::scene::{Bounds, Instance, Light, LightKind, Material, Mesh, Pose, Scene};
+use zfail_plan::topology::Topology;
 use zfail_plan::view::View;
 
 /// Uploaded meshes and materials, registered casters, and the plain data that frames are made from.
@@ -55,17 +56,14 @@ impl SceneOnGpu {
                 continue;
             }
             meshes.push(Some(MeshBuffers::new(gpu, mesh)?));
-            let surface = |t| scene.triangle_surface(m, t);
             let casts = |t| scene.triangle_casts(m, t);
             let casting =
                 scene.instances.iter().any(|i| i.mesh == m && i.casts_shadow) && (0..mesh.triangles.len()).any(casts);
-            let (device, queue, positions, triangles) = (&gpu.device, &gpu.queue, &mesh.positions, &mesh.triangles);
-            ids.push(match (casting, mesh.bends()) {
-                (false, _) => None,
-                (true, false) => Some(shadows.add_mesh(device, queue, positions, triangles, surface)?),
-                (true, true) => {
-                    Some(shadows.add_bending_mesh(device, queue, positions, triangles, &mesh.alike, surface)?)
-                }
+            ids.push(if casting {
+                let topology = Topology::of(scene, m).map_err(zfail::Error::from)?;
+                Some(shadows.add_topology(&gpu.device, &gpu.queue, topology)?)
+            } else {
+                None
             });
         }
         let mut casters = Vec::new();

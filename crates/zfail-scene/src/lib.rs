@@ -7,6 +7,7 @@
 mod animate;
 pub mod builtin;
 mod complete;
+mod deform;
 mod placement;
 pub mod read;
 pub mod write;

@@ -128,28 +128,14 @@ impl Shadows {
         triangles: &[[u32; 3]],
         surface: impl Fn(usize) -> S,
     ) -> Result<MeshId, Error> {
-        self.register(device, queue, Topology::new(positions, triangles, surface)?)
+        self.add_topology(device, queue, Topology::new(positions, triangles, surface)?)
     }
 
-    /// Registers a mesh whose vertices [`Self::move_vertices`] will move against each other, as skins and morph targets
-    /// do. As [`Self::add_mesh`], but vertices are welded where `alike`, a number per vertex, is equal: these must have
-    /// bit-equal positions whenever they are moved. Such a mesh casts from both sides of every triangle, closed or not.
+    /// Registers a mesh whose topology is known already: one made elsewhere, or one that bends ([`Topology::bending`]).
     ///
     /// # Errors
-    /// As [`Self::add_mesh`], and if `alike` has another length than `positions`.
-    pub fn add_bending_mesh<S: Into<Surface>>(
-        &mut self,
-        device: &Device,
-        queue: &Queue,
-        positions: &[[f32; 3]],
-        triangles: &[[u32; 3]],
-        alike: &[u32],
-        surface: impl Fn(usize) -> S,
-    ) -> Result<MeshId, Error> {
-        self.register(device, queue, Topology::bending(positions, triangles, alike, surface)?)
-    }
-
-    fn register(&mut self, device: &Device, queue: &Queue, topology: Topology) -> Result<MeshId, Error> {
+    /// More vertices than the device's buffers hold.
+    pub fn add_topology(&mut self, device: &Device, queue: &Queue, topology: Topology) -> Result<MeshId, Error> {
         let (slot, serial, moved) = self.arena.add(device, queue, topology)?;
         if moved {
             self.bindings = bind(device, &self.layout, &self.arena, &self.buffers);
@@ -157,8 +143,8 @@ impl Shadows {
         Ok(MeshId { slot, serial })
     }
 
-    /// Moves the vertices of a mesh made by [`Self::add_bending_mesh`]: the very positions that the depth pass will draw,
-    /// in the order in which they were registered. Silhouettes and bounds follow at the next [`Self::prepare`].
+    /// Moves the vertices of a mesh that bends ([`Topology::bending`]): the very positions that the depth pass will draw, in
+    /// the order in which its topology was made. Silhouettes and bounds follow at the next [`Self::prepare`].
     ///
     /// # Errors
     /// A mesh that is not registered or rigid, another number of positions, or coordinates that are not finite. Nothing

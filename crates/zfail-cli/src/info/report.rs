@@ -170,8 +170,7 @@ impl FileReport {
 
 impl MeshReport {
     fn new(scene: &Scene, index: usize, mesh: &Mesh) -> Result<Self, Error> {
-        let casts = |triangle| scene.triangle_casts(index, triangle);
-        let topology = Topology::new(&mesh.positions, &mesh.triangles, casts)
+        let topology = Topology::of(scene, index)
             .map_err(|e| Error::failed(format!("mesh {index} '{}' cannot cast shadows: {e}", mesh.name)))?;
         let [boundary_edges, _, non_manifold_edges] = topology.edge_counts();
         let inconsistent = topology.incidence().filter(|(_, incident)| {

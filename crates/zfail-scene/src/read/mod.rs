@@ -2,7 +2,7 @@
 //!
 //! Data flow one way: `container` (bytes to JSON and binary chunk) -> `schema` (typed JSON) -> `extensions` and
 //! `validate` (nothing is trusted before) -> `document` (buffers and accessors) -> `images`, `materials`
-//! -> `graph` (world transforms) -> `animations` -> `surface` -> `pose` -> `shading` -> `mesh` -> `instances`, `lights`.
+//! -> `graph` (world transforms) -> `animations` -> `surface` -> `shading` -> `pose` -> `mesh` -> `instances`, `lights`.
 //!
 //! Whatever the bytes are, the result is a scene that satisfies the scene types' invariants or a [`LoadError`]; what
 //! was repaired or left out is in [`Scene::notices`].
@@ -10,18 +10,17 @@
 //! # Repairs
 //! - Left out: points and lines, primitives without positions, what remains of a triangle list after the last whole
 //!   triangle, meshes that a node's scale shrinks to a line or a point, images other than PNG and JPEG or damaged
-//!   inside, every extension that only changes looks, animations of morph weights, of what extensions add and of nodes
-//!   that have a matrix.
+//!   inside, every extension that only changes looks, animations of what extensions add and of nodes that have a matrix.
 //! - Replaced: missing normals (flat ones, on vertices of their own) and those without a direction, texture
 //!   coordinates and colours that are not finite, rotations without length, joint weights that do not add up to 1.
 //! - Approximated: specular-glossiness (diffuse colour alone) and transmission (blending).
 //! - Tolerated: a byte order mark, misaligned accessors, missing bounds of accessors, bytes after the end, a mesh or
 //!   a skin that nothing uses, key frames before time 0 and two at the same time.
-//! - Baked into meshes of their own, in world space: skins (in their rest pose, morph targets at their default
-//!   weights) and meshes that their node flattens into a plane.
+//! - Baked into meshes of their own, in world space: skins (at rest, until an animation bends them) and meshes that their
+//!   node flattens into a plane.
 //! - Moved: a mesh far from its own origin, exactly, with the translation in its instances.
 //! - While an animation flattens a mesh or makes it vanish, it keeps an invisible thickness, so that transforms stay
-//!   invertible; what an animation takes beyond 10^15 m stays at its place of rest meanwhile.
+//!   invertible; what an animation takes beyond 10^15 m stays at its place of rest, or in its rest pose, meanwhile.
 //!
 //! # Extras
 //! What glTF has no word for, in the extras of nodes:
