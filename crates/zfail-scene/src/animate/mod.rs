@@ -12,6 +12,7 @@ mod track;
 pub(crate) use rig::{MAX_COORDINATE, Move, Node, Parent, Rig, Trs, placed};
 pub(crate) use track::{Interpolation, Track};
 
+use crate::cut::{self, CutMesh};
 use crate::deform::{Body, Frame};
 use glam::DAffine3;
 use zfail_plan::scene::{Pose, Scene};
@@ -88,6 +89,17 @@ impl Animated {
             let world_from_node = self.rig.pose(&animation.moves, seconds, pose);
             self.bend(&animation.morphs, seconds, &world_from_node, pose);
         }
+    }
+
+    /// [`cut::cut_masked`] for a scene that moves: what is cut bends as it would have done uncut.
+    pub fn cut_masked(&mut self, tolerance: f64, limits: cut::Limits) -> Vec<CutMesh> {
+        let cuts = cut::cut_masked(&mut self.scene, tolerance, limits);
+        for cut in &cuts {
+            for body in self.bodies.iter_mut().filter(|body| body.mesh == cut.mesh) {
+                body.cuts.clone_from(&cut.sources);
+            }
+        }
+        cuts
     }
 
     /// Overwrites the bent meshes in `pose`, and the places of skins.

@@ -224,7 +224,8 @@ impl Placer<'_> {
                 }
             };
             let weights = pose.weights.iter().map(|&bits| f64::from_bits(bits)).collect();
-            self.motion.bodies.push((Body { mesh, sections: std::mem::take(sections), weights, frame }, pose.node));
+            let (sections, cuts) = (std::mem::take(sections), Vec::new());
+            self.motion.bodies.push((Body { mesh, sections, cuts, weights, frame }, pose.node));
         }
     }
 
