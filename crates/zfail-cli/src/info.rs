@@ -1,5 +1,9 @@
 //! `zfail info`: what is in a scene, and how each mesh will cast.
+//!
+//! Data flow: `report` and `mesh` (the facts) -> `text` on a `page`, or JSON.
 
+mod mesh;
+mod page;
 mod report;
 mod text;
 
@@ -21,6 +25,6 @@ pub fn run(args: &args::Info) -> Result<(), Error> {
             .map_err(|e| Error::failed(format!("cannot encode the report: {e}")))?;
         console::print(&format!("{json}\n"))
     } else {
-        console::print(&report.to_string())
+        console::print(&text::text(&report))
     }
 }
