@@ -55,7 +55,7 @@ fn photograph(
     for camera in &scene.cameras {
         let view = camera.view(args.size.0, &bounds);
         let (picture, _) = renderer.picture(&view, &settings).map_err(|e| render::failed(&e))?;
-        pictures.push((camera.name.clone(), render::encode_picture(&picture, Format::Png)?));
+        pictures.push((camera.name.clone(), render::picture_file(&picture, Format::Png)?));
         progress.inc(1);
     }
     Ok(pictures)

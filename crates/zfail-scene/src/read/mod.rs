@@ -46,6 +46,7 @@ mod error;
 mod extensions;
 mod graph;
 mod images;
+mod info;
 mod instances;
 mod lights;
 mod limits;
@@ -59,6 +60,7 @@ mod uri;
 mod validate;
 
 pub use error::{Fault, LoadError};
+pub use info::{ChannelInfo, FileInfo, MorphInfo, SkinInfo};
 pub use limits::Limits;
 
 use crate::animate::Animated;
@@ -71,27 +73,6 @@ use std::fs;
 use std::io;
 use std::path::Path;
 use zfail_plan::scene::Scene;
-
-/// What a file says about itself, beyond the scene that was made of it.
-#[derive(Clone, Debug, Default)]
-pub struct FileInfo {
-    /// `asset.version`.
-    pub version: String,
-    /// The program that wrote the file.
-    pub generator: Option<String>,
-    /// Extensions that the file uses, required or not.
-    pub extensions_used: Vec<String>,
-    /// Extensions that the file declares indispensable.
-    pub extensions_required: Vec<String>,
-    /// Number of skins.
-    pub skins: usize,
-    /// Meshes in the file, including those outside the default scene.
-    pub meshes: usize,
-    /// Nodes in the file, including those outside the default scene.
-    pub nodes: usize,
-    /// Meshes with morph targets.
-    pub morphed_meshes: usize,
-}
 
 /// Loads the default scene of a `.glb` or `.gltf` file.
 ///
@@ -213,21 +194,5 @@ fn tidy(notices: &mut Vec<String>) {
         let more = notices.len() - MAX_NOTICES;
         notices.truncate(MAX_NOTICES);
         notices.push(format!("... and {more} more"));
-    }
-}
-
-impl FileInfo {
-    fn of(root: &Root) -> Self {
-        let morphed = |mesh: &&schema::Mesh| mesh.primitives.iter().any(|p| !p.targets.is_empty());
-        Self {
-            version: root.asset.version.clone(),
-            generator: root.asset.generator.clone(),
-            extensions_used: root.extensions_used.clone(),
-            extensions_required: root.extensions_required.clone(),
-            skins: root.skins.len(),
-            meshes: root.meshes.len(),
-            nodes: root.nodes.len(),
-            morphed_meshes: root.meshes.iter().filter(morphed).count(),
-        }
     }
 }
