@@ -3,6 +3,7 @@
 use crate::names;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use zfail_render::wgpu::Backends;
 use zfail_render::{AovKind, Exposure, Technique};
@@ -52,6 +53,8 @@ pub struct Render {
     pub camera: String,
     #[command(flatten)]
     pub moment: Moment,
+    #[command(flatten)]
+    pub masks: Masks,
     /// Let only this light shine; repeat it for several. The ambient light stays, and files keep the numbers that the
     /// lights have in the scene.
     #[arg(long = "light", value_name = "N", value_parser = parse_light)]
@@ -87,6 +90,8 @@ pub struct Render {
 pub struct Info {
     #[command(flatten)]
     pub scene: SceneArg,
+    #[command(flatten)]
+    pub masks: Masks,
     /// Print JSON instead of text.
     #[arg(long)]
     pub json: bool,
@@ -105,6 +110,8 @@ pub struct Bench {
     /// Frames per second of the animation: frame k shows the time k / F, wrapped over its duration.
     #[arg(long, value_name = "F", default_value = "60", value_parser = parse_fps, allow_negative_numbers = true)]
     pub fps: f64,
+    #[command(flatten)]
+    pub masks: Masks,
     /// Size of the frames in pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = Size::parse)]
     pub size: Size,
@@ -161,6 +168,43 @@ pub struct Moment {
     /// Animation by index or name; the first one if only --time is given.
     #[arg(long, value_name = "NAME|N")]
     pub animation: Option<String>,
+}
+
+/// Surfaces with a mask.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct Masks {
+    /// Shadows of masked surfaces (foliage, fences): off (none), solid (of their whole triangles), or cut=PIXELS (of the
+    /// mask's shape: triangles are cut along the contour of alpha on load, at most PIXELS of the texture's pixels off).
+    #[arg(long, value_name = "off|solid|cut=PIXELS", default_value = "cut=1", value_parser = AlphaShadows::parse)]
+    pub alpha_shadows: AlphaShadows,
+}
+
+/// How masked surfaces cast shadows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AlphaShadows {
+    /// Not at all.
+    Off,
+    /// As whole triangles.
+    Solid,
+    /// Cut along the contour of alpha, at most so many texels from it.
+    Cut(f64),
+}
+
+impl AlphaShadows {
+    fn parse(text: &str) -> Result<Self, String> {
+        const TOLERANCES: RangeInclusive<f64> = 0.02..=1000.0;
+        match (text, text.strip_prefix("cut=").map(str::parse)) {
+            ("off", _) => Ok(Self::Off),
+            ("solid", _) => Ok(Self::Solid),
+            (_, Some(Ok(pixels))) if TOLERANCES.contains(&pixels) => Ok(Self::Cut(pixels)),
+            (_, Some(_)) => Err(format!(
+                "PIXELS must be a number from {} to {}, such as cut=1",
+                TOLERANCES.start(),
+                TOLERANCES.end()
+            )),
+            _ => Err("it must be off, solid or cut=PIXELS, such as cut=1".to_owned()),
+        }
+    }
 }
 
 /// Which GPU does the work.
@@ -399,6 +443,16 @@ mod tests {
         assert_eq!(parse_seconds("1.25"), Ok(1.25));
         for wrong in ["", "-1", "nan", "inf", "1s"] {
             assert!(parse_seconds(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn alpha_shadows() {
+        assert_eq!(AlphaShadows::parse("off"), Ok(AlphaShadows::Off));
+        assert_eq!(AlphaShadows::parse("solid"), Ok(AlphaShadows::Solid));
+        assert_eq!(AlphaShadows::parse("cut=0.5"), Ok(AlphaShadows::Cut(0.5)));
+        for wrong in ["", "cut", "cut=", "cut=0", "cut=-1", "cut=nan", "cut=inf", "cut=1px", "on", "Solid"] {
+            assert!(AlphaShadows::parse(wrong).is_err(), "{wrong}");
         }
     }
 

@@ -1,6 +1,6 @@
 //! `zfail gallery`: every built-in scene as a file, with a picture from each of its cameras and a page of them all.
 
-use crate::args::{self, Format};
+use crate::args::{self, AlphaShadows, Format};
 use crate::console;
 use crate::contact_sheet::ContactSheet;
 use crate::error::Error;
@@ -31,7 +31,10 @@ pub fn run(args: &args::Gallery) -> Result<(), Error> {
         let glb = write::to_glb(scene).map_err(|e| Error::failed(format!("{name}: {}", input::chain(&e))))?;
         outputs.add(args.folder.join(format!("{name}.glb")), glb);
         sheet.scene(name, description, scene);
-        for (camera, bytes) in photograph(&gpu, scene, args, &progress)? {
+        // The file keeps its masks.
+        let mut cut = scene.clone();
+        input::shape_shadows(&mut cut, AlphaShadows::Cut(1.0));
+        for (camera, bytes) in photograph(&gpu, &cut, args, &progress)? {
             let file = picture_name(name, &camera, scene.cameras.len());
             sheet.picture(&file, &camera);
             outputs.add(args.folder.join(file), bytes);
