@@ -4,6 +4,7 @@ use crate::names;
 use crate::numbering::Frames;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use zfail_render::wgpu::Backends;
 use zfail_render::{AovKind, Exposure, Technique};
@@ -185,13 +186,17 @@ pub struct Sequence {
     pub fps: f64,
 }
 
-/// Bounds on what loading a scene may cost.
+/// What is made of a scene's file, and what that may cost.
 #[derive(Args, Clone, Debug)]
 pub struct Loading {
     /// Refuse scenes beyond this; repeat it for several. memory=SIZE is what all data of a scene may take while it is
     /// loaded, such as 512MiB or 16GiB (8GiB unless given), image-side=PIXELS the width and height of an image (16384).
     #[arg(long = "limit", value_name = "NAME=VALUE", value_parser = Limit::parse)]
     limits: Vec<Limit>,
+    /// Shadows of masked surfaces (foliage, fences): off (none), solid (of their whole triangles), or cut=PIXELS (of the
+    /// mask's shape: triangles are cut along the contour of alpha on load, at most PIXELS of the texture's pixels off).
+    #[arg(long, value_name = "off|solid|cut=PIXELS", default_value = "cut=1", value_parser = AlphaShadows::parse)]
+    pub alpha_shadows: AlphaShadows,
 }
 
 impl Loading {
@@ -235,6 +240,34 @@ impl Limit {
                 let names = Self::NAMES.join(", ");
                 Err(format!("unknown limit '{name}'{}; there are: {names}", hint.unwrap_or_default()))
             }
+        }
+    }
+}
+
+/// How masked surfaces cast shadows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AlphaShadows {
+    /// Not at all.
+    Off,
+    /// As whole triangles.
+    Solid,
+    /// Cut along the contour of alpha, at most so many texels from it.
+    Cut(f64),
+}
+
+impl AlphaShadows {
+    fn parse(text: &str) -> Result<Self, String> {
+        const TOLERANCES: RangeInclusive<f64> = 0.02..=1000.0;
+        match (text, text.strip_prefix("cut=").map(str::parse)) {
+            ("off", _) => Ok(Self::Off),
+            ("solid", _) => Ok(Self::Solid),
+            (_, Some(Ok(pixels))) if TOLERANCES.contains(&pixels) => Ok(Self::Cut(pixels)),
+            (_, Some(_)) => Err(format!(
+                "PIXELS must be a number from {} to {}, such as cut=1",
+                TOLERANCES.start(),
+                TOLERANCES.end()
+            )),
+            _ => Err("it must be off, solid or cut=PIXELS, such as cut=1".to_owned()),
         }
     }
 }
@@ -487,6 +520,16 @@ mod tests {
     }
 
     #[test]
+    fn alpha_shadows() {
+        assert_eq!(AlphaShadows::parse("off"), Ok(AlphaShadows::Off));
+        assert_eq!(AlphaShadows::parse("solid"), Ok(AlphaShadows::Solid));
+        assert_eq!(AlphaShadows::parse("cut=0.5"), Ok(AlphaShadows::Cut(0.5)));
+        for wrong in ["", "cut", "cut=", "cut=0", "cut=-1", "cut=nan", "cut=inf", "cut=1px", "on", "Solid"] {
+            assert!(AlphaShadows::parse(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
     fn exposures() {
         assert_eq!(parse_exposure("auto"), Ok(Exposure::Auto));
         assert_eq!(parse_exposure("-1.5"), Ok(Exposure::Ev(-1.5)));
@@ -504,7 +547,8 @@ mod tests {
         for wrong in ["", "memory", "memory=", "memory=-1", "memory=8GB", "memory=99999999TiB", "image-side=0", "x=1"] {
             assert!(Limit::parse(wrong).is_err(), "{wrong}");
         }
-        let loading = Loading { limits: vec![Limit::Memory(1), Limit::ImageSide(2), Limit::Memory(3)] };
+        let limits = vec![Limit::Memory(1), Limit::ImageSide(2), Limit::Memory(3)];
+        let loading = Loading { limits, alpha_shadows: AlphaShadows::Solid };
         let Limits { bytes, image_side, .. } = loading.limits();
         assert_eq!((bytes, image_side), (3, 2));
     }

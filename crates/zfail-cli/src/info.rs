@@ -18,7 +18,7 @@ use report::Report;
 /// # Errors
 /// If the scene cannot be loaded or standard output cannot be written.
 pub fn run(args: &args::Info) -> Result<(), Error> {
-    let (animated, file) = input::read(&args.scene.scene, &args.scene.loading.limits())?;
+    let (animated, file) = input::read(&args.scene.scene, &args.scene.loading)?;
     let report = Report::new(&animated, file)?;
     if args.json {
         let json = serde_json::to_string_pretty(&report)

@@ -1,20 +1,38 @@
 //! The scene that a command works on, and the camera, lights and GPU that it asks for.
 
-use crate::args::{Device, Moment};
+use crate::args::{AlphaShadows, Device, Loading, Moment};
 use crate::error::Error;
 use crate::names;
 use std::path::Path;
-use zfail_plan::scene::Scene;
+use zfail_plan::scene::{MaskCasting, Scene};
 use zfail_render::{Gpu, GpuOptions};
-use zfail_scene::{Animated, FileInfo, Limits, builtin};
+use zfail_scene::{Animated, FileInfo, Limits, builtin, cut};
 
 const BUILTIN: &str = "builtin:";
 
-/// Loads a file as it is, with its animations and what it says about itself, or generates a built-in scene.
+/// Loads a file as it is, with its animations and what it says about itself, or generates a built-in scene; masked
+/// surfaces get the shadows that `masks` asks for.
 ///
 /// # Errors
 /// If the file cannot be used, or there is no such built-in scene.
-pub fn read(scene: &str, limits: &Limits) -> Result<(Animated, Option<FileInfo>), Error> {
+pub fn read(scene: &str, loading: &Loading) -> Result<(Animated, Option<FileInfo>), Error> {
+    let (mut animated, file) = open(scene, &loading.limits())?;
+    shape_shadows(&mut animated, loading.alpha_shadows);
+    Ok((animated, file))
+}
+
+/// Prepares masked surfaces for the shadows that they are to cast.
+pub fn shape_shadows(animated: &mut Animated, masks: AlphaShadows) {
+    match masks {
+        AlphaShadows::Off => animated.scene.mask_casting = MaskCasting::Off,
+        AlphaShadows::Solid => animated.scene.mask_casting = MaskCasting::Solid,
+        AlphaShadows::Cut(texels) => {
+            animated.cut_masked(texels, cut::Limits::default());
+        }
+    }
+}
+
+fn open(scene: &str, limits: &Limits) -> Result<(Animated, Option<FileInfo>), Error> {
     if let Some(name) = scene.strip_prefix(BUILTIN) {
         let scene = builtin::animated(name).ok_or_else(|| names::unknown("built-in scene", name, &builtin_names()))?;
         return Ok((scene, None));
@@ -33,8 +51,8 @@ pub fn read(scene: &str, limits: &Limits) -> Result<(Animated, Option<FileInfo>)
 ///
 /// # Errors
 /// As [`read`].
-pub fn complete(scene: &str, limits: &Limits) -> Result<Animated, Error> {
-    let (mut animated, file) = read(scene, limits)?;
+pub fn complete(scene: &str, loading: &Loading) -> Result<Animated, Error> {
+    let (mut animated, file) = read(scene, loading)?;
     if file.is_some() {
         zfail_scene::complete(&mut animated.scene);
     }

@@ -35,7 +35,7 @@ fn still(args: &args::Render) -> Result<(), Error> {
     let destinations = Destinations::new(args, None)?;
     destinations.check(&args.aovs, false)?;
     destinations.folders(&args.aovs).for_each(output::sweep);
-    let scene = input::at_moment(input::complete(&args.scene.scene, &args.scene.loading.limits())?, &args.moment)?;
+    let scene = input::at_moment(input::complete(&args.scene.scene, &args.scene.loading)?, &args.moment)?;
     console::notices(&scene.notices, args.verbosity.quiet);
     let camera = input::camera(&scene, &args.camera)?;
     let view = scene.cameras[camera].view(args.size.0, &scene.bounds());

@@ -37,7 +37,7 @@ struct Frame {
 /// As [`super::run`]. The frames rendered before stay.
 pub fn run(args: &args::Render, numbers: Range<u32>) -> Result<(), Error> {
     let destinations = destinations(args, numbers.clone())?;
-    let mut animated = input::complete(&args.scene.scene, &args.scene.loading.limits())?;
+    let mut animated = input::complete(&args.scene.scene, &args.scene.loading)?;
     let animation = input::animation(&animated, &args.moment)?;
     let camera = input::camera(&animated.scene, &args.camera)?;
     let lights = input::lights(&animated.scene, &args.lights)?;

@@ -8,6 +8,7 @@
 mod builder;
 mod cathedral;
 mod container;
+mod foliage;
 mod jail;
 mod lantern;
 mod motion;
@@ -50,6 +51,7 @@ pub const SCENES: &[Entry] = &[
     entry("stacked", "1000 and 256 stacked sheets, more than 8 bits of stencil count (E&K section 4.1)"),
     entry("ortho", "A diorama under an orthographic camera, where infinity has no finite depth"),
     entry("stage", "Three coloured spot lights on dancing figures (McGuire et al., Image 7)"),
+    entry("foliage", "A tree of leaf cards and a wire fence: masked textures that cast shadows of their shape"),
     entry(
         "lantern",
         "A projected stained-glass window, falloff curves and a light in a box (McGuire et al. section 4)",
@@ -76,6 +78,7 @@ pub fn scene(name: &str) -> Option<Scene> {
         "stacked" => stacked::scene(),
         "ortho" => ortho::scene(),
         "stage" => stage::scene(),
+        "foliage" => foliage::scene(),
         "lantern" => lantern::scene(),
         _ => return None,
     })
