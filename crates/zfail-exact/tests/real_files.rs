@@ -10,7 +10,7 @@ use std::{env, path::PathBuf};
 use zfail_exact::bench::{self, Images};
 use zfail_exact::tally::Tally;
 use zfail_plan::glam::DVec3;
-use zfail_plan::scene::{Light, LightKind, LightShape, Scene};
+use zfail_plan::scene::{Light, LightKind, LightShape, Mesh, Scene};
 use zfail_render::{Gpu, GpuOptions, Settings, Technique, Tiles};
 use zfail_scene::Limits;
 
@@ -152,9 +152,16 @@ fn no_pixel_of_a_built_in_scene_is_wrong() {
     let only = env::var("ZFAIL_MODEL").unwrap_or_default();
     let (mut masks, mut failures) = (Tally::default(), Vec::new());
     for entry in zfail_scene::builtin::SCENES.iter().filter(|e| e.name.contains(&only)) {
-        let scene = zfail_scene::builtin::scene(entry.name).expect("a name from the list");
+        let animated = zfail_scene::builtin::animated(entry.name).expect("a name from the list");
+        let mut scene = animated.scene.clone();
         for camera in 0..scene.cameras.len() {
             judge(&gpu, entry.name, &scene, camera, &mut masks, &mut failures);
+        }
+        if scene.meshes.iter().any(Mesh::bends) {
+            for seconds in [0.9, 2.7] {
+                scene.set_pose(&animated.pose(0, seconds));
+                judge(&gpu, &format!("{} at {seconds} s", entry.name), &scene, 0, &mut masks, &mut failures);
+            }
         }
     }
     println!("all                  {masks}");
