@@ -10,7 +10,7 @@ use super::shapes::{Facets, capsule, merged, painted};
 
 pub(super) fn scene() -> Scene {
     let mut b = SceneBuilder::new("foliage", [0.14, 0.17, 0.23], [0.45, 0.6, 0.85]);
-    let direction = DVec3::new(0.72, -0.52, -0.2).normalize();
+    let direction = DVec3::new(0.8, -0.42, -0.16).normalize();
     b.light("sun", LightKind::Directional { direction }, 0xffd9a4, 2.6);
     let lawn = b.textured(pattern::grass("lawn", 0x6b8548, 0x97905c), 3.0, 0.95);
     b.block("lawn", [-40.0, -1.0, -40.0], [40.0, 0.0, 40.0], lawn);
@@ -44,7 +44,7 @@ fn cutout(b: &mut SceneBuilder, name: &str, image: Image, metallic: f32) -> usiz
 
 /// A trunk, branches, and a card with a twig's picture at many places of the crown.
 fn tree(b: &mut SceneBuilder) {
-    const TWIGS: u32 = 110;
+    const TWIGS: u32 = 84;
     let bark = b.matte("bark", 0x6d5138, 0.9);
     let leaves = cutout(b, "leaves", pattern::twig("twig", 11, 0x7da045), 0.0);
     let crown = DVec3::new(0.0, 2.9, 0.0);
@@ -56,8 +56,8 @@ fn tree(b: &mut SceneBuilder) {
         let slope = 1.0 - 1.75 * share;
         let outward = turn * DVec3::new((1.0 - slope * slope).sqrt(), slope, 0.0);
         let depth = 0.55 + 0.45 * f64::from(k * 7 % 11) / 10.0;
-        let place = crown + outward * DVec3::new(1.45, 1.25, 1.45) * depth;
-        if k % 11 == 0 {
+        let place = crown + outward * DVec3::new(1.55, 1.35, 1.55) * depth;
+        if k % 7 == 0 {
             wood.push(capsule(DVec3::Y * (1.4 + 0.9 * (1.0 - share)), 0.045, place, 0.012, 8));
         }
         // Leaves hang outwards and turn their faces every way.
@@ -68,7 +68,7 @@ fn tree(b: &mut SceneBuilder) {
     }
     let parts = wood.into_iter().map(|part| painted(part, bark)).chain([painted(cards.mesh("cards", 0.1), leaves)]);
     let mesh = b.mesh("tree", merged("tree", parts));
-    b.place("tree", mesh, at(-2.0, 0.0, -2.2, 0.0));
+    b.place("tree", mesh, at(-1.3, 0.0, -2.2, 0.0));
 }
 
 /// A square with the whole texture, upright along `up`.
