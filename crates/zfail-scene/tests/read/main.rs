@@ -2,8 +2,11 @@
 
 mod animating;
 mod build;
+mod compressed;
 mod files;
 mod geometry;
 mod hostile;
+mod images;
 mod nodes;
+mod plain;
 mod posing;
