@@ -1,19 +1,20 @@
 //! The document with the bytes behind it, and how accessors are read from them.
 //!
-//! In: the schema and its buffers. Out: attribute values as `f32` or `u32`, in checked arithmetic throughout, so that
+//! In: the schema and its buffers, decompressed here. Out: attribute values as `f32` or `u32`, in checked arithmetic throughout, so that
 //! no offset, stride or count can reach outside a buffer. Misaligned data are read as they are.
 
+use super::buffers::{Buffers, slice};
+use super::draco;
 use super::error::{Result, invalid};
 use super::limits::Budget;
 use super::schema::{Component, Root};
-use super::uri;
 use std::borrow::Cow;
 use std::path::Path;
 
 pub(super) struct Document<'a> {
     pub root: Root,
     pub budget: Budget,
-    buffers: Vec<Cow<'a, [u8]>>,
+    buffers: Buffers<'a>,
 }
 
 /// Elements at a fixed distance, all inside `bytes`.
@@ -30,30 +31,11 @@ impl<'a> Elements<'a> {
 }
 
 impl<'a> Document<'a> {
-    /// Fetches every buffer, then checks that every buffer view and accessor stays inside.
-    pub fn open(root: Root, bin: Option<&'a [u8]>, folder: &Path, budget: Budget) -> Result<Self> {
-        let mut buffers = Vec::with_capacity(root.buffers.len());
-        for (i, buffer) in root.buffers.iter().enumerate() {
-            let mut bytes: Cow<'a, [u8]> = match (&buffer.uri, bin) {
-                (Some(uri), _) => uri::read(uri, folder, &budget, &format!("buffers[{i}].uri"))?.into(),
-                (None, Some(bin)) if i == 0 => bin.into(),
-                (None, _) => return Err(invalid(format!("buffers[{i}]"), "has neither a uri nor a binary chunk")),
-            };
-            let length = bytes.len();
-            match &mut bytes {
-                _ if (length as u64) < buffer.byte_length => {
-                    let problem = format!("says {} bytes, but there are {length}", buffer.byte_length);
-                    return Err(invalid(format!("buffers[{i}].byteLength"), problem));
-                }
-                Cow::Borrowed(b) => *b = &b[..buffer.byte_length as usize],
-                Cow::Owned(b) => b.truncate(buffer.byte_length as usize),
-            }
-            buffers.push(bytes);
-        }
+    /// Decompresses what is compressed, then checks that every buffer view and accessor stays inside.
+    pub fn open(mut root: Root, bin: Option<Cow<'a, [u8]>>, folder: &Path, budget: Budget) -> Result<Self> {
+        let mut buffers = Buffers::open(&root, bin, folder, &budget)?;
+        draco::expand(&mut root, &mut buffers, &budget)?;
         let document = Self { root, budget, buffers };
-        for view in 0..document.root.buffer_views.len() {
-            document.view(view)?;
-        }
         for accessor in 0..document.root.accessors.len() {
             document.elements(accessor)?;
             document.sparse(accessor)?;
@@ -63,18 +45,7 @@ impl<'a> Document<'a> {
 
     /// The bytes of a buffer view.
     pub fn view(&self, index: usize) -> Result<&[u8]> {
-        let view = &self.root.buffer_views[index];
-        let buffer = &self.buffers[view.buffer];
-        slice(buffer, view.byte_offset, view.byte_length).ok_or_else(|| {
-            let problem = format!(
-                "covers {} bytes from {}, but buffers[{}] has {}",
-                view.byte_length,
-                view.byte_offset,
-                view.buffer,
-                buffer.len()
-            );
-            invalid(format!("bufferViews[{index}]"), problem)
-        })
+        self.buffers.view(&self.root, index)
     }
 
     /// The dense part of an accessor; `None` if it has none and so consists of zeros.
@@ -210,10 +181,4 @@ fn unsigned(bytes: &[u8], component: Component) -> u32 {
         2 => u16::from_le_bytes([bytes[0], bytes[1]]).into(),
         _ => u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]),
     }
-}
-
-fn slice(bytes: &[u8], offset: u64, length: u64) -> Option<&[u8]> {
-    let start = usize::try_from(offset).ok()?;
-    let end = usize::try_from(offset.checked_add(length)?).ok()?;
-    bytes.get(start..end)
 }

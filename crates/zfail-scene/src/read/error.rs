@@ -14,7 +14,8 @@ pub struct LoadError {
     pub fault: Fault,
 }
 
-/// What is wrong with a file. Elements are named by their JSON path, such as `accessors[3].byteOffset`.
+/// What is wrong with a file. Elements are named by their JSON path, such as `accessors[3].byteOffset`, or by
+/// their line.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Fault {
@@ -22,8 +23,18 @@ pub enum Fault {
     #[error("cannot be read: {0}")]
     Unreadable(io::Error),
     /// Neither a GLB container nor a JSON document.
-    #[error("is not a glTF 2.0 file: {0}")]
+    #[error("is not a glTF 2.0 file: {0}; the other formats that are read end in .obj, .stl or .ply")]
     NotGltf(String),
+    /// An .obj, .stl or .ply file that its format does not allow, or that has nothing to draw.
+    #[error("{element}: {problem}; export the file again as {format} or as glTF")]
+    Malformed {
+        /// Name of the format.
+        format: &'static str,
+        /// Line or element.
+        element: String,
+        /// What is wrong.
+        problem: String,
+    },
     /// The JSON breaks the specification in a way that leaves no doubt-free repair.
     #[error("{element}: {problem}; export the file again, or see what the Khronos glTF validator says about it")]
     Invalid {
@@ -42,16 +53,6 @@ pub enum Fault {
         /// What went wrong.
         problem: String,
     },
-    /// The file requires an extension without which its geometry or textures cannot be read.
-    #[error("{element}: the extension {extension} is not supported; {remedy}")]
-    Extension {
-        /// JSON path.
-        element: String,
-        /// Its name.
-        extension: String,
-        /// What to do.
-        remedy: &'static str,
-    },
     /// Loading would need more memory than [`super::Limits`] allows.
     #[error("{element}: needs more than the limit of {limit}; simplify the scene, or raise the limit")]
     TooLarge {
@@ -66,6 +67,10 @@ pub(super) type Result<T> = std::result::Result<T, Fault>;
 
 pub(super) fn invalid(element: impl AsRef<str>, problem: impl AsRef<str>) -> Fault {
     Fault::Invalid { element: one_line(element.as_ref()), problem: one_line(problem.as_ref()) }
+}
+
+pub(super) fn malformed(format: &'static str, element: impl AsRef<str>, problem: impl AsRef<str>) -> Fault {
+    Fault::Malformed { format, element: one_line(element.as_ref()), problem: one_line(problem.as_ref()) }
 }
 
 /// `text`, which may quote anything from a file, fit for one line on a terminal: without control characters, and

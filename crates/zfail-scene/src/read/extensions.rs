@@ -1,15 +1,19 @@
-//! Which glTF extensions are read, ignored or refused.
+//! Which glTF extensions are read and which are left out.
 
-use super::error::{Fault, Result};
 use super::schema::Root;
 
 /// Read in full, or without influence on a still picture.
 const READ: &[&str] = &[
     "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
+    "EXT_texture_webp",
+    "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_unlit",
     "KHR_mesh_quantization",
+    "KHR_meshopt_compression",
+    "KHR_texture_basisu",
     "KHR_texture_transform",
     "KHR_xmp_json_ld",
     "KHR_xmp",
@@ -18,24 +22,8 @@ const READ: &[&str] = &[
 /// Read in part; the loader says where it had to approximate.
 const APPROXIMATED: &[&str] = &["KHR_materials_pbrSpecularGlossiness", "KHR_materials_transmission"];
 
-/// Without these the data cannot be read at all, and how to get rid of them.
-const COMPRESSION: &[(&str, &str)] = &[
-    ("KHR_draco_mesh_compression", WITHOUT_MESH_COMPRESSION),
-    ("EXT_meshopt_compression", WITHOUT_MESH_COMPRESSION),
-    ("KHR_meshopt_compression", WITHOUT_MESH_COMPRESSION),
-    ("KHR_texture_basisu", "export again with PNG or JPEG textures"),
-];
-
-pub(super) const WITHOUT_MESH_COMPRESSION: &str = "export again without mesh compression";
-
-/// Refuses files whose data cannot be read, and notes every extension that is left out.
-pub(super) fn check(root: &Root, notices: &mut Vec<String>) -> Result<()> {
-    for (i, name) in root.extensions_required.iter().enumerate() {
-        if let Some(&(_, remedy)) = COMPRESSION.iter().find(|(known, _)| known == name) {
-            let element = format!("extensionsRequired[{i}]");
-            return Err(Fault::Extension { element, extension: name.clone(), remedy });
-        }
-    }
+/// Notes every extension that is left out.
+pub(super) fn check(root: &Root, notices: &mut Vec<String>) {
     let mut named: Vec<&String> = Vec::new();
     for name in root.extensions_required.iter().chain(&root.extensions_used) {
         if !named.contains(&name) && named.len() < 64 {
@@ -45,7 +33,6 @@ pub(super) fn check(root: &Root, notices: &mut Vec<String>) -> Result<()> {
             }
         }
     }
-    Ok(())
 }
 
 fn notice(name: &str, required: bool) -> Option<String> {
@@ -53,9 +40,7 @@ fn notice(name: &str, required: bool) -> Option<String> {
         return None;
     }
     let name: String = name.chars().take(80).collect();
-    Some(if name == "EXT_texture_webp" {
-        format!("{name}: WebP images cannot be read; other images are used where the file has them")
-    } else if name.starts_with("KHR_materials_") {
+    Some(if name.starts_with("KHR_materials_") {
         format!("{name} is ignored: the materials are shown without it")
     } else if required {
         format!("{name} is ignored although the file requires it: what it adds is missing")

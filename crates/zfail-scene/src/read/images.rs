@@ -1,7 +1,10 @@
-//! PNG and JPEG images, decoded in parallel to eight bits per channel.
+//! PNG, JPEG, WebP and KTX 2.0 images, decoded in parallel to eight bits per channel.
 
 use super::document::Document;
 use super::error::{Fault, Result, invalid};
+use super::fence::fenced;
+use super::ktx::{self, Ktx};
+use super::limits::Budget;
 use super::uri;
 use image::error::ImageError;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
@@ -11,8 +14,8 @@ use std::io::Cursor;
 use std::path::Path;
 use zfail_plan::scene::Image;
 
-/// Decodes every image of the document. One in another format, or damaged inside, becomes `None` and a notice, since
-/// the geometry is sound without it; one that is missing or cut off is an error.
+/// Decodes every image of the document. One in another format, or damaged inside, becomes `None`
+/// and a notice, since the geometry is sound without it; one that is missing or cut off is an error.
 pub(super) fn read(document: &Document<'_>, folder: &Path, notices: &mut Vec<String>) -> Result<Vec<Option<Image>>> {
     let decode = |i: usize| decode(document, folder, i);
     let decoded: Vec<_> = (0..document.root.images.len()).into_par_iter().map(decode).collect::<Result<_>>()?;
@@ -26,7 +29,10 @@ pub(super) fn read(document: &Document<'_>, folder: &Path, notices: &mut Vec<Str
     Ok(decoded.into_iter().map(keep).collect())
 }
 
-fn decode(document: &Document<'_>, folder: &Path, i: usize) -> Result<std::result::Result<Image, String>> {
+/// An image, or the notice why it is left out.
+type Decoded = std::result::Result<Image, String>;
+
+fn decode(document: &Document<'_>, folder: &Path, i: usize) -> Result<Decoded> {
     let source = &document.root.images[i];
     let bytes: Cow<'_, [u8]> = match (&source.uri, source.buffer_view) {
         (Some(uri), _) => uri::read(uri, folder, &document.budget, &format!("images[{i}].uri"))?.into(),
@@ -35,34 +41,60 @@ fn decode(document: &Document<'_>, folder: &Path, i: usize) -> Result<std::resul
     };
     let file_name = source.uri.as_deref().filter(|uri| !uri.starts_with("data:"));
     let name = source.name.as_deref().or(file_name).map_or_else(|| format!("image {i}"), str::to_owned);
-    let format = match image::guess_format(&bytes) {
-        Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg)) => format,
-        _ => return Ok(Err(format!("image \"{name}\" is neither PNG nor JPEG and is left out"))),
-    };
-    let pixels = |(width, height): (u32, u32)| {
-        let side = document.budget.image_side();
-        if width.max(height) > side {
-            let limit = format!("{side} pixels a side");
-            return Err(Fault::TooLarge { element: format!("images[{i}]"), limit });
+    let element = format!("images[{i}]");
+    if bytes.starts_with(ktx::SIGNATURE) {
+        return decode_ktx(name, &bytes, &document.budget, &element);
+    }
+    match image::guess_format(&bytes) {
+        Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::WebP)) => {
+            decode_common(name, &bytes, format, &document.budget, &element)
         }
-        // Decoders hold up to 16 bits per channel beside the result.
-        document.budget.charge(u64::from(width) * u64::from(height), 12, || format!("images[{i}]"))
-    };
-    let decoded = ImageReader::with_format(Cursor::new(&bytes), format).into_decoder().and_then(|decoder| {
-        let checked = pixels(decoder.dimensions());
-        match checked {
+        _ => Ok(Err(format!("image \"{name}\" is neither PNG, JPEG, WebP nor KTX 2.0 and is left out"))),
+    }
+}
+
+fn decode_common(name: String, bytes: &[u8], format: ImageFormat, budget: &Budget, element: &str) -> Result<Decoded> {
+    let damaged = |why: &dyn std::fmt::Display| Ok(Err(format!("image \"{name}\" is damaged and is left out: {why}")));
+    let decoded = fenced(|| {
+        let decoder = ImageReader::with_format(Cursor::new(bytes), format).into_decoder()?;
+        match charge(decoder.dimensions(), budget, element) {
             Ok(()) => DynamicImage::from_decoder(decoder).map(Ok),
             Err(fault) => Ok(Err(fault)),
         }
     });
     match decoded {
-        Ok(Ok(image)) => {
+        Ok(Ok(Ok(image))) => {
             let rgba = image.into_rgba8();
             let (width, height) = rgba.dimensions();
             Ok(Ok(Image { name, width, height, rgba: rgba.into_raw() }))
         }
-        Ok(Err(fault)) => Err(fault),
-        Err(ImageError::IoError(_)) => Err(invalid(format!("images[{i}]"), format!("\"{name}\" is cut off"))),
-        Err(e) => Ok(Err(format!("image \"{name}\" is damaged and is left out: {e}"))),
+        Ok(Ok(Err(fault))) => Err(fault),
+        Ok(Err(ImageError::IoError(_))) => Err(invalid(element, format!("\"{name}\" is cut off"))),
+        Ok(Err(e)) => damaged(&e),
+        Err(panic) => damaged(&panic),
     }
+}
+
+fn decode_ktx(name: String, bytes: &[u8], budget: &Budget, element: &str) -> Result<Decoded> {
+    let left_out = |why: String| format!("image \"{name}\" cannot be read and is left out: {why}");
+    let ktx = match Ktx::open(bytes) {
+        Ok(ktx) => ktx,
+        Err(why) => return Ok(Err(left_out(why))),
+    };
+    let (width, height) = ktx.dimensions();
+    charge((width, height), budget, element)?;
+    Ok(match ktx.rgba() {
+        Ok(rgba) => Ok(Image { name, width, height, rgba }),
+        Err(why) => Err(left_out(why)),
+    })
+}
+
+/// Refuses images beyond the limits before anything is allocated for them.
+fn charge((width, height): (u32, u32), budget: &Budget, element: &str) -> Result<()> {
+    let side = budget.image_side();
+    if width.max(height) > side {
+        return Err(Fault::TooLarge { element: element.into(), limit: format!("{side} pixels a side") });
+    }
+    // Decoders hold up to 16 bits per channel beside the result.
+    budget.charge(u64::from(width) * u64::from(height), 12, || element.into())
 }

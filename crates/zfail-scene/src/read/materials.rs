@@ -13,7 +13,7 @@ pub(super) fn textures(
     let mut textures = Vec::new();
     let mut unreadable = 0;
     let index = root.textures.iter().map(|texture| {
-        let Some(image) = texture.source.and_then(|source| images[source]) else {
+        let Some(image) = texture.images().find_map(|image| images[image]) else {
             unreadable += 1;
             return None;
         };

@@ -1,16 +1,18 @@
-//! glTF 2.0 files to scenes.
+//! glTF 2.0 files to scenes; .obj, .stl and .ply files too.
 //!
 //! Data flow one way: `container` (bytes to JSON and binary chunk) -> `schema` (typed JSON) -> `extensions` and
-//! `validate` (nothing is trusted before) -> `document` (buffers and accessors) -> `images`, `materials`
-//! -> `graph` (world transforms) -> `animations` -> `surface` -> `shading` -> `pose` -> `mesh` -> `instances`, `lights`.
+//! `validate` (nothing is trusted before) -> `document` (`buffers` with `meshopt`, `draco`, then accessors) -> `images`
+//! with `ktx`, `materials` -> `graph` (world transforms) -> `animations` -> `surface` -> `shading` -> `pose` -> `mesh`
+//! -> `instances`, `lights`. The other formats, `obj` with `mtl`, `stl` and `ply`, become a glTF document first (`plain`).
 //!
 //! Whatever the bytes are, the result is a scene that satisfies the scene types' invariants or a [`LoadError`]; what
 //! was repaired or left out is in [`Scene::notices`].
 //!
 //! # Repairs
 //! - Left out: points and lines, primitives without positions, what remains of a triangle list after the last whole
-//!   triangle, meshes that a node's scale shrinks to a line or a point, images other than PNG and JPEG or damaged
-//!   inside, every extension that only changes looks, animations of what extensions add and of nodes that have a matrix.
+//!   triangle, meshes that a node's scale shrinks to a line or a point, images other than PNG, JPEG, WebP and
+//!   KTX 2.0 or damaged inside, every extension that only changes looks, animations of what extensions add and of nodes
+//!   that have a matrix.
 //! - Replaced: missing normals (flat ones, on vertices of their own) and those without a direction, texture
 //!   coordinates and colours that are not finite, rotations without length, joint weights that do not add up to 1.
 //! - Approximated: specular-glossiness (diffuse colour alone) and transmission (blending).
@@ -21,6 +23,19 @@
 //! - Moved: a mesh far from its own origin, exactly, with the translation in its instances.
 //! - While an animation flattens a mesh or makes it vanish, it keeps an invisible thickness, so that transforms stay
 //!   invertible; what an animation takes beyond 10^15 m stays at its place of rest, or in its rest pose, meanwhile.
+//!
+//! # Extensions
+//! - Geometry: KHR_draco_mesh_compression, EXT_meshopt_compression, KHR_meshopt_compression (what is compressed replaces
+//!   the fallback, which need not exist), KHR_mesh_quantization, EXT_mesh_gpu_instancing.
+//! - Images: KHR_texture_basisu, EXT_texture_webp (each before the texture's own source, which takes over where the
+//!   extension's image cannot be read), KHR_texture_transform.
+//! - Lights and materials: KHR_lights_punctual, KHR_materials_unlit, KHR_materials_emissive_strength; in part
+//!   KHR_materials_pbrSpecularGlossiness and KHR_materials_transmission.
+//!
+//! # Other formats
+//! - .obj with .mtl: groups become one mesh. y is up. Missing libraries and textures leave a surface grey or plain.
+//! - .stl, binary or ASCII, and .ply with polygons, normals, colours (sRGB) and texture coordinates: z is up.
+//! - None has units: one unit is one metre. All surfaces are shown from both sides. Polygons become fans.
 //!
 //! # Extras
 //! What glTF has no word for, in the extras of nodes:
@@ -40,21 +55,31 @@
 //! Everything else that breaks the specification and bears on the scene is an error.
 
 mod animations;
+mod buffers;
 mod container;
 mod document;
+mod draco;
 mod error;
 mod extensions;
+mod fence;
 mod graph;
 mod images;
 mod info;
 mod instances;
+mod ktx;
 mod lights;
 mod limits;
 mod materials;
 mod mesh;
+mod meshopt;
+mod mtl;
+mod obj;
+mod plain;
+mod ply;
 mod pose;
 mod schema;
 mod shading;
+mod stl;
 mod surface;
 mod uri;
 mod validate;
@@ -69,16 +94,17 @@ use error::{Result, invalid, one_line};
 use graph::Graph;
 use limits::Budget;
 use schema::Root;
+use std::borrow::Cow;
 use std::fs;
 use std::io;
 use std::path::Path;
 use zfail_plan::scene::Scene;
 
-/// Loads the default scene of a `.glb` or `.gltf` file.
+/// Loads the default scene of a `.glb` or `.gltf` file, or all of an `.obj`, `.stl` or `.ply` file.
 ///
 /// # Errors
-/// If the file, or one it refers to, cannot be read, breaks the specification, requires a compression extension or
-/// exceeds the default [`Limits`].
+/// If the file, or one it refers to, cannot be read, breaks the specification of its format or exceeds the default
+/// [`Limits`].
 pub fn load(path: &Path) -> std::result::Result<Scene, LoadError> {
     load_with(path, &Limits::default())
 }
@@ -116,13 +142,9 @@ fn read(path: &Path, limits: &Limits) -> Result<(Animated, FileInfo)> {
     let folder = path.parent().unwrap_or(Path::new("."));
 
     let mut notices = Vec::new();
-    let container = container::open(&bytes, &mut notices)?;
-    charge_json(container.json, &budget)?;
-    let root = parse(container.json)?;
-    extensions::check(&root, &mut notices)?;
+    let Opened { root, bin, info } = open(&bytes, path, folder, &name, &budget, &mut notices)?;
     validate::check(&root)?;
-    let info = FileInfo::of(&root);
-    let document = Document::open(root, container.bin, folder, budget)?;
+    let document = Document::open(root, bin, folder, budget)?;
 
     let mut scene = Scene { name, notices, ..Scene::default() };
     let textures = read_materials(&document, folder, &mut scene)?;
@@ -137,6 +159,43 @@ fn read(path: &Path, limits: &Limits) -> Result<(Animated, FileInfo)> {
     }
     tidy(&mut scene.notices);
     Ok((motion.animate(scene), info))
+}
+
+/// A document without the bytes of its buffers, except the binary chunk.
+struct Opened<'a> {
+    root: Root,
+    bin: Option<Cow<'a, [u8]>>,
+    info: FileInfo,
+}
+
+/// The document in `bytes`. The name decides on the format; what has no known one must be glTF.
+fn open<'a>(
+    bytes: &'a [u8],
+    path: &Path,
+    folder: &Path,
+    name: &str,
+    budget: &Budget,
+    notices: &mut Vec<String>,
+) -> Result<Opened<'a>> {
+    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+    let plain = match extension.to_str() {
+        Some("obj") => obj::read(bytes, folder, budget)?,
+        Some("stl") => stl::read(bytes, budget)?,
+        Some("ply") => ply::read(bytes, folder, budget)?,
+        _ => {
+            let container = container::open(bytes, notices)?;
+            charge_json(container.json, budget)?;
+            let root = parse(container.json)?;
+            extensions::check(&root, notices);
+            let info = FileInfo::of(&root);
+            return Ok(Opened { root, bin: container.bin.map(Cow::Borrowed), info });
+        }
+    };
+    notices.extend_from_slice(&plain.notices);
+    let format = plain.format;
+    let (root, bin) = plain.into_document(name, budget)?;
+    let info = FileInfo { format, version: String::new(), ..FileInfo::of(&root) };
+    Ok(Opened { root, bin: Some(Cow::Owned(bin)), info })
 }
 
 /// Parsed JSON is larger than its text: `{}` may become a material. Commas bound the other values.

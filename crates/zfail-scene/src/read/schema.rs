@@ -122,7 +122,15 @@ pub(super) struct Primitive {
 #[serde(default)]
 pub(super) struct PrimitiveExtensions {
     #[serde(rename = "KHR_draco_mesh_compression")]
-    pub draco: Option<IgnoredAny>,
+    pub draco: Option<Draco>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Draco {
+    pub buffer_view: usize,
+    /// Unique ids of the stream's attributes.
+    pub attributes: BTreeMap<String, u32>,
 }
 
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
@@ -352,6 +360,29 @@ impl Default for TextureTransform {
 pub(super) struct Texture {
     pub sampler: Option<usize>,
     pub source: Option<usize>,
+    pub extensions: TextureExtensions,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct TextureExtensions {
+    #[serde(rename = "KHR_texture_basisu")]
+    pub basisu: TextureSource,
+    #[serde(rename = "EXT_texture_webp")]
+    pub webp: TextureSource,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct TextureSource {
+    pub source: Option<usize>,
+}
+
+impl Texture {
+    /// The images that may be shown, best first: an extension's before the one for readers that do not know it.
+    pub fn images(&self) -> impl Iterator<Item = usize> {
+        [self.extensions.basisu.source, self.extensions.webp.source, self.source].into_iter().flatten()
+    }
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -491,6 +522,59 @@ pub(super) struct BufferView {
     pub byte_offset: u64,
     pub byte_length: u64,
     pub byte_stride: Option<u64>,
+    #[serde(default)]
+    pub extensions: BufferViewExtensions,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct BufferViewExtensions {
+    #[serde(rename = "EXT_meshopt_compression")]
+    ext: Option<Meshopt>,
+    #[serde(rename = "KHR_meshopt_compression")]
+    khr: Option<Meshopt>,
+}
+
+impl BufferViewExtensions {
+    /// The compressed form of the view with the name of the extension that says so.
+    pub fn meshopt(&self) -> Option<(&'static str, &Meshopt)> {
+        let khr = self.khr.as_ref().map(|m| ("KHR_meshopt_compression", m));
+        khr.or(self.ext.as_ref().map(|m| ("EXT_meshopt_compression", m)))
+    }
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Meshopt {
+    pub buffer: usize,
+    #[serde(default)]
+    pub byte_offset: u64,
+    pub byte_length: u64,
+    pub byte_stride: u64,
+    pub count: u64,
+    pub mode: MeshoptMode,
+    #[serde(default)]
+    pub filter: MeshoptFilter,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "UPPERCASE")]
+pub(super) enum MeshoptMode {
+    Attributes,
+    Triangles,
+    Indices,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "UPPERCASE")]
+pub(super) enum MeshoptFilter {
+    #[default]
+    None,
+    Octahedral,
+    Quaternion,
+    Exponential,
+    /// KHR_meshopt_compression only.
+    Color,
 }
 
 #[derive(Debug, Deserialize)]
@@ -498,6 +582,30 @@ pub(super) struct BufferView {
 pub(super) struct Buffer {
     pub uri: Option<String>,
     pub byte_length: u64,
+    #[serde(default)]
+    pub extensions: BufferExtensions,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct BufferExtensions {
+    #[serde(rename = "EXT_meshopt_compression")]
+    ext: Fallback,
+    #[serde(rename = "KHR_meshopt_compression")]
+    khr: Fallback,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+struct Fallback {
+    fallback: bool,
+}
+
+impl Buffer {
+    /// Whether the buffer serves only readers without meshopt; it may then have no bytes at all.
+    pub fn is_fallback(&self) -> bool {
+        self.extensions.ext.fallback || self.extensions.khr.fallback
+    }
 }
 
 #[derive(Debug, Default, Deserialize)]

@@ -5,7 +5,7 @@ use super::limits::Budget;
 use base64::Engine;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
-use percent_encoding::percent_decode_str;
+use percent_encoding::{NON_ALPHANUMERIC, percent_decode_str, utf8_percent_encode};
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
@@ -30,6 +30,15 @@ pub(super) fn read(uri: &str, folder: &Path, budget: &Budget, element: &str) -> 
     let length = regular_file_length(&path).map_err(fault)?;
     budget.charge(length, 1, || element.into())?;
     fs::read(&path).map_err(|e| fault(e.to_string()))
+}
+
+/// The URI of the file that a text format names plainly, if there is such a file at or below `folder`.
+pub(super) fn of_file(name: &str, folder: &Path) -> Option<String> {
+    let name = name.replace('\\', "/");
+    let encode = |segment: &str| utf8_percent_encode(segment, NON_ALPHANUMERIC).to_string();
+    let uri = name.split('/').map(encode).collect::<Vec<_>>().join("/");
+    let path = resolve(&uri, folder).ok()?;
+    regular_file_length(&path).ok().map(|_| uri)
 }
 
 /// Length of the file at `path`; an error for folders, pipes and devices, which have no definite one.
@@ -93,6 +102,20 @@ mod tests {
         assert_eq!(read_in(here, "data:a/b;base64,AAE").unwrap(), [0, 1], "missing padding");
         for bad in ["data:a/b;;base64,AA==", "data:a/b,AAAA", "data:;base64AA", "data:;base64,A*==", "data:"] {
             assert!(read_in(here, bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn plain_names() {
+        let outer = tempfile::tempdir().unwrap();
+        let folder = outer.path().join("scene");
+        fs::create_dir_all(folder.join("sub")).unwrap();
+        fs::write(outer.path().join("secret"), b"s").unwrap();
+        fs::write(folder.join("sub/a b%20#.png"), b"x").unwrap();
+        let uri = of_file("sub\\a b%20#.png", &folder).unwrap();
+        assert_eq!(read_in(&folder, &uri).unwrap(), b"x");
+        for bad in ["../secret", "missing", "sub", "", "/etc/passwd", "C:\\a.png"] {
+            assert_eq!(of_file(bad, &folder), None, "{bad}");
         }
     }
 

@@ -3,8 +3,7 @@
 //! In: the parsed schema. Out: nothing, or the first fault by its JSON path. After it, indexing into the schema's
 //! arrays with the schema's own indices cannot fail. Bytes are checked later, by `document`.
 
-use super::error::{Fault, Result, invalid};
-use super::extensions::WITHOUT_MESH_COMPRESSION;
+use super::error::{Result, invalid};
 use super::schema::{Camera, Material, Primitive, Root, TextureInfo};
 use std::collections::BTreeMap;
 use std::fmt::Display;
@@ -131,14 +130,11 @@ impl References<'_> {
         for (t, target) in primitive.targets.iter().enumerate() {
             self.attributes(target, &format!("{path}.targets[{t}]"))?;
         }
-        let Some(&positions) = primitive.attributes.get("POSITION") else { return Ok(()) };
-        if primitive.extensions.draco.is_some() && root.accessors[positions].buffer_view.is_none() {
-            return Err(Fault::Extension {
-                element: path.into(),
-                extension: "KHR_draco_mesh_compression".into(),
-                remedy: WITHOUT_MESH_COMPRESSION,
-            });
+        if let Some(draco) = &primitive.extensions.draco {
+            let element = format_args!("{path}.extensions.KHR_draco_mesh_compression.bufferView");
+            within(draco.buffer_view, root.buffer_views.len(), "bufferViews", element)?;
         }
+        let Some(&positions) = primitive.attributes.get("POSITION") else { return Ok(()) };
         let count = root.accessors[positions].count;
         let targets = primitive.targets.iter().enumerate();
         let sets = std::iter::once((None, &primitive.attributes)).chain(targets.map(|(t, target)| (Some(t), target)));
@@ -203,7 +199,14 @@ impl References<'_> {
         }
         for (i, texture) in root.textures.iter().enumerate() {
             optional(texture.sampler, root.samplers.len(), "samplers", format_args!("textures[{i}].sampler"))?;
-            optional(texture.source, root.images.len(), "images", format_args!("textures[{i}].source"))?;
+            let extensions = &texture.extensions;
+            for (source, path) in [
+                (texture.source, "source"),
+                (extensions.basisu.source, "extensions.KHR_texture_basisu.source"),
+                (extensions.webp.source, "extensions.EXT_texture_webp.source"),
+            ] {
+                optional(source, root.images.len(), "images", format_args!("textures[{i}].{path}"))?;
+            }
         }
         for (i, image) in root.images.iter().enumerate() {
             optional(
@@ -221,6 +224,10 @@ impl References<'_> {
         let views = root.buffer_views.len();
         for (i, view) in root.buffer_views.iter().enumerate() {
             within(view.buffer, root.buffers.len(), "buffers", format_args!("bufferViews[{i}].buffer"))?;
+            if let Some((extension, meshopt)) = view.extensions.meshopt() {
+                let element = format_args!("bufferViews[{i}].extensions.{extension}.buffer");
+                within(meshopt.buffer, root.buffers.len(), "buffers", element)?;
+            }
         }
         for (i, accessor) in root.accessors.iter().enumerate() {
             optional(accessor.buffer_view, views, "bufferViews", format_args!("accessors[{i}].bufferView"))?;

@@ -110,20 +110,7 @@ fn nested_json_is_refused() {
 }
 
 #[test]
-fn compression_is_refused_by_name() {
-    for (name, remedy) in [
-        ("KHR_draco_mesh_compression", "export again without mesh compression"),
-        ("EXT_meshopt_compression", "export again without mesh compression"),
-        ("KHR_texture_basisu", "export again with PNG or JPEG textures"),
-    ] {
-        let mut gltf = Gltf::triangle();
-        gltf.json["extensionsRequired"] = json!([name]);
-        gltf.fails_with(&format!("extensionsRequired[0]: the extension {name} is not supported; {remedy}"));
-    }
-    let mut gltf = Gltf::triangle();
-    gltf.json["accessors"][0].as_object_mut().unwrap().remove("bufferView");
-    gltf.json["meshes"][0]["primitives"][0]["extensions"] = json!({"KHR_draco_mesh_compression": {}});
-    gltf.fails_with("meshes[0].primitives[0]: the extension KHR_draco_mesh_compression");
+fn unknown_extensions_are_named() {
     let mut gltf = Gltf::triangle();
     gltf.json["extensionsRequired"] = json!(["ACME_magic"]);
     assert_eq!(gltf.scene().notices, ["ACME_magic is ignored although the file requires it: what it adds is missing"]);
@@ -203,23 +190,23 @@ fn the_rich_file_loads() {
 }
 
 /// SplitMix64.
-struct Random(u64);
+pub struct Random(pub u64);
 
 impl Random {
-    fn next(&mut self) -> u64 {
+    pub fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         z ^ (z >> 31)
     }
 
-    fn below(&mut self, n: usize) -> usize {
+    pub fn below(&mut self, n: usize) -> usize {
         (self.next() % n as u64) as usize
     }
 }
 
 /// Loads what is hostile; a scene that results must be sound, and neither may take long.
-fn survive(bytes: &[u8], what: &dyn Fn() -> String) -> bool {
+pub fn survive(bytes: &[u8], what: &dyn Fn() -> String) -> bool {
     let start = Instant::now();
     let limits = Limits { bytes: 64 << 20, image_side: 1024 };
     let result = std::panic::catch_unwind(|| {

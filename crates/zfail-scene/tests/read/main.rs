@@ -3,8 +3,11 @@
 mod animating;
 mod bending;
 mod build;
+mod compressed;
 mod files;
 mod geometry;
 mod hostile;
+mod images;
 mod nodes;
+mod plain;
 mod posing;

@@ -1,0 +1,104 @@
+//! The bytes of the document's buffer views, decompressed.
+//!
+//! In: the schema, the binary chunk and the files that it names. Out: the bytes of every buffer view, each checked to
+//! lie inside its buffer.
+
+use super::error::{Result, invalid};
+use super::limits::Budget;
+use super::schema::{Buffer, Root};
+use super::{meshopt, uri};
+use rayon::prelude::*;
+use std::borrow::Cow;
+use std::path::Path;
+
+pub(super) struct Buffers<'a> {
+    buffers: Vec<Cow<'a, [u8]>>,
+    /// Per buffer view, its bytes if they had to be decompressed.
+    decoded: Vec<Option<Vec<u8>>>,
+}
+
+impl<'a> Buffers<'a> {
+    /// Fetches every buffer that is needed, and decompresses the buffer views that are compressed.
+    pub fn open(root: &Root, bin: Option<Cow<'a, [u8]>>, folder: &Path, budget: &Budget) -> Result<Self> {
+        let mut needed = vec![false; root.buffers.len()];
+        for view in &root.buffer_views {
+            needed[view.extensions.meshopt().map_or(view.buffer, |(_, meshopt)| meshopt.buffer)] = true;
+        }
+        let mut buffers = Vec::with_capacity(root.buffers.len());
+        let mut bin = bin;
+        for (i, buffer) in root.buffers.iter().enumerate() {
+            // What only stands in for compressed data need not exist.
+            let skipped = buffer.is_fallback() && !needed[i];
+            let chunk = if i == 0 { bin.take() } else { None };
+            buffers.push(if skipped { Cow::Borrowed([].as_slice()) } else { fetch(i, buffer, chunk, folder, budget)? });
+        }
+        let mut open = Self { buffers, decoded: Vec::new() };
+        let decode = |i: usize| open.decode(root, i, budget);
+        open.decoded = (0..root.buffer_views.len()).into_par_iter().map(decode).collect::<Result<_>>()?;
+        for view in 0..root.buffer_views.len() {
+            open.view(root, view)?;
+        }
+        Ok(open)
+    }
+
+    fn decode(&self, root: &Root, index: usize, budget: &Budget) -> Result<Option<Vec<u8>>> {
+        let view = &root.buffer_views[index];
+        let Some((extension, meshopt)) = view.extensions.meshopt() else { return Ok(None) };
+        let path = format!("bufferViews[{index}].extensions.{extension}");
+        let source = self.range(meshopt.buffer, meshopt.byte_offset, meshopt.byte_length, &path)?;
+        meshopt::decode(meshopt, view, source, budget, &path).map(Some)
+    }
+
+    /// The bytes of buffer view `index` of `root`.
+    pub fn view(&self, root: &Root, index: usize) -> Result<&[u8]> {
+        if let Some(Some(bytes)) = self.decoded.get(index) {
+            return Ok(bytes);
+        }
+        let view = &root.buffer_views[index];
+        self.range(view.buffer, view.byte_offset, view.byte_length, &format!("bufferViews[{index}]"))
+    }
+
+    /// Supplies the bytes of the buffer view that is added to the document next.
+    pub fn push(&mut self, bytes: Vec<u8>) {
+        self.decoded.push(Some(bytes));
+    }
+
+    fn range(&self, buffer: usize, offset: u64, length: u64, element: &str) -> Result<&[u8]> {
+        let bytes = &self.buffers[buffer];
+        slice(bytes, offset, length).ok_or_else(|| {
+            let problem = format!("covers {length} bytes from {offset}, but buffers[{buffer}] has {}", bytes.len());
+            invalid(element, problem)
+        })
+    }
+}
+
+fn fetch<'a>(
+    i: usize,
+    buffer: &Buffer,
+    chunk: Option<Cow<'a, [u8]>>,
+    folder: &Path,
+    budget: &Budget,
+) -> Result<Cow<'a, [u8]>> {
+    let mut bytes: Cow<'a, [u8]> = match (&buffer.uri, chunk) {
+        (Some(uri), _) => uri::read(uri, folder, budget, &format!("buffers[{i}].uri"))?.into(),
+        (None, Some(chunk)) => chunk,
+        (None, None) => return Err(invalid(format!("buffers[{i}]"), "has neither a uri nor a binary chunk")),
+    };
+    let length = bytes.len();
+    match &mut bytes {
+        _ if (length as u64) < buffer.byte_length => {
+            let problem = format!("says {} bytes, but there are {length}", buffer.byte_length);
+            return Err(invalid(format!("buffers[{i}].byteLength"), problem));
+        }
+        Cow::Borrowed(b) => *b = &b[..buffer.byte_length as usize],
+        Cow::Owned(b) => b.truncate(buffer.byte_length as usize),
+    }
+    Ok(bytes)
+}
+
+/// `length` bytes from `offset`, if there are so many.
+pub(super) fn slice(bytes: &[u8], offset: u64, length: u64) -> Option<&[u8]> {
+    let start = usize::try_from(offset).ok()?;
+    let end = usize::try_from(offset.checked_add(length)?).ok()?;
+    bytes.get(start..end)
+}
