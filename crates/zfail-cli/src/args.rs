@@ -5,7 +5,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use std::path::{Path, PathBuf};
 use zfail_render::wgpu::Backends;
-use zfail_render::{AovKind, Exposure, Technique};
+use zfail_render::{AovKind, Exposure, Technique, Terminator};
 
 /// Exact stencil shadows of glTF scenes: every shadow boundary to the pixel, without bias and without a shadow map.
 #[derive(Debug, Parser)]
@@ -69,6 +69,10 @@ pub struct Render {
     #[arg(long, value_name = "EV|auto", default_value = "auto", allow_negative_numbers = true)]
     #[arg(value_parser = parse_exposure)]
     pub exposure: Exposure,
+    /// How light ends where smooth surfaces turn away from it: 'soft' fades it before the triangles of a coarse mesh show,
+    /// 'exact' leaves it as the normals say. Shadows are the same.
+    #[arg(long, value_name = "soft|exact", default_value = "soft", value_parser = parse_terminator)]
+    pub terminator: Terminator,
     /// One more result, sampled at pixel centres; repeat it for several. KIND is shadow or stencil (PATH is a folder,
     /// light-<i>.png for each light), depth or position (.exr), normal or albedo (.exr or .png).
     #[arg(long = "aov", value_name = "KIND=PATH", value_parser = Aov::parse)]
@@ -316,6 +320,14 @@ fn parse_samples(text: &str) -> Result<u32, String> {
         "1" => Ok(1),
         "4" => Ok(4),
         _ => Err("it must be 1 or 4".to_owned()),
+    }
+}
+
+fn parse_terminator(text: &str) -> Result<Terminator, String> {
+    match text {
+        "soft" => Ok(Terminator::Soft),
+        "exact" => Ok(Terminator::Exact),
+        _ => Err("it must be soft or exact".to_owned()),
     }
 }
 

@@ -26,6 +26,7 @@ pub fn run(args: &args::Render) -> Result<(), Error> {
         shadows: !args.no_shadows,
         lights: Some(lights.clone()),
         exposure: args.exposure,
+        terminator: args.terminator,
         ..Settings::default()
     };
 

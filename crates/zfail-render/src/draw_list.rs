@@ -35,6 +35,8 @@ pub struct Look {
     pub colored: bool,
     /// Roughness is 1 everywhere.
     pub rough: bool,
+    /// Light fades before facets turn away.
+    pub bent: bool,
 }
 
 /// [`AlphaMode`] without its number.
@@ -46,7 +48,7 @@ pub enum Alpha {
 }
 
 impl Look {
-    fn new(material: &Material, mesh: &Mesh) -> Self {
+    fn new(material: &Material, mesh: &Mesh, bent: bool) -> Self {
         let slots = material_slots(material);
         Self {
             alpha: match material.alpha {
@@ -59,6 +61,7 @@ impl Look {
             textured: slots.map(|slot| slot.is_some()),
             colored: mesh.colors.iter().any(|&c| c != [1.0; 4]),
             rough: material.roughness >= 1.0 && material.metallic_roughness_texture.is_none(),
+            bent,
         }
     }
 
@@ -121,8 +124,8 @@ impl DrawList {
         self.solid.iter().map(triangles).sum::<usize>().try_into().unwrap_or(u32::MAX)
     }
 
-    /// Lists the parts of a scene that has passed [`crate::check::scene`].
-    pub fn new(scene: &Scene) -> Self {
+    /// Lists the parts of a scene that has passed [`crate::check::scene`]; `bent` tells which meshes are.
+    pub fn new(scene: &Scene, bent: impl Fn(usize) -> bool) -> Self {
         let default = Material::default();
         let mut parts = Vec::new();
         for (m, mesh) in scene.meshes.iter().enumerate() {
@@ -132,7 +135,7 @@ impl DrawList {
                     mesh: m,
                     material: primitive.material.unwrap_or(scene.materials.len()),
                     indices: primitive.triangles.start * 3..primitive.triangles.end * 3,
-                    look: Look::new(primitive.material.map_or(&default, |m| &scene.materials[m]), mesh),
+                    look: Look::new(primitive.material.map_or(&default, |m| &scene.materials[m]), mesh, bent(m)),
                     center: Bounds::of(triangles.iter().flatten().map(|&v| mesh.position(v))).center(),
                 });
             }

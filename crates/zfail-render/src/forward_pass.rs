@@ -8,7 +8,7 @@ use crate::layouts::Layouts;
 use crate::pipeline::{ADD, Recipe, depth_test};
 use crate::scene::SceneOnGpu;
 use crate::targets::{LDR, RADIANCE};
-use crate::{Gpu, shader};
+use crate::{Gpu, Settings, Terminator, shader};
 use std::collections::HashMap;
 
 /// What a pass over the scene does.
@@ -25,6 +25,8 @@ pub struct Step {
     pub shadows: Shadows,
     /// Adds more lights to what an earlier step has drawn.
     pub added: bool,
+    /// Light fades at the terminator of coarse meshes.
+    pub soft: bool,
 }
 
 /// How a step learns what is in shadow.
@@ -40,9 +42,16 @@ pub enum Shadows {
 }
 
 impl Step {
-    pub fn new(samples: u32, developed: bool, lights: &[LightRecord], shadows: Shadows, added: bool) -> Self {
-        let shaped = lights.iter().any(|light| light.shape != 0);
-        Self { samples, developed, lights: lights.len().min(UNROLLED + 1) as u32, shaped, shadows, added }
+    pub fn new(settings: &Settings, developed: bool, lights: &[LightRecord], shadows: Shadows, added: bool) -> Self {
+        Self {
+            samples: settings.samples,
+            developed,
+            lights: lights.len().min(UNROLLED + 1) as u32,
+            shaped: lights.iter().any(|light| light.shape != 0),
+            shadows,
+            added,
+            soft: settings.terminator == Terminator::Soft,
+        }
     }
 }
 
@@ -132,6 +141,7 @@ fn create(gpu: &Gpu, layouts: &Layouts, (look, mirrored, step): Key) -> Vec<wgpu
         ("EMISSIVE", emissive),
         ("ROUGH", look.rough),
         ("SHAPED", step.shaped),
+        ("BENT", look.bent && step.soft),
         // Masked surfaces have been cut out by the depth pass already.
         ("ALPHA_MASK", look.alpha == Alpha::Mask && step.shadows == Shadows::None),
         ("BLEND", blend),

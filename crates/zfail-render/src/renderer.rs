@@ -168,7 +168,7 @@ impl<'g> Renderer<'g> {
         // Several steps would write the same queries.
         self.timer.begin(gpu, if parts.len() > 1 { 0 } else { spans.count() });
         for (number, part) in parts.iter().enumerate() {
-            self.step(view, &active, &kinds, &figures, &exposed, part, number > 0, finish, spans, samples)?;
+            self.step(view, &active, &kinds, &figures, &exposed, part, number > 0, finish, spans, settings)?;
         }
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         if finish == Finish::Darkroom {
@@ -216,9 +216,9 @@ impl<'g> Renderer<'g> {
         added: bool,
         finish: Finish,
         spans: Spans,
-        samples: u32,
+        settings: &Settings,
     ) -> Result<(), RenderError> {
-        let gpu = self.gpu;
+        let (gpu, samples) = (self.gpu, settings.samples);
         let (scene, layouts, timer) = (&self.scene, &self.layouts, &self.timer);
         let lights = &active[part.lights.clone()];
         let records: Vec<LightRecord> = lights.iter().map(|&l| exposed.lights[l]).collect();
@@ -240,7 +240,7 @@ impl<'g> Renderer<'g> {
             (true, true) => Shadows::Stencil,
             (true, false) => Shadows::Bits,
         };
-        let step = Step::new(samples, finish == Finish::Forward, &records, shadows, added && part.solid);
+        let step = Step::new(settings, finish == Finish::Forward, &records, shadows, added && part.solid);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let depth_stencil = targets.depth_stencil.clone();
         if shadowed {

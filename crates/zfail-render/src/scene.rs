@@ -72,10 +72,11 @@ impl SceneOnGpu {
             .materials
             .iter()
             .fold([0.0; 3], |greatest, m| std::array::from_fn(|c| f32::max(greatest[c], m.emissive[c])));
+        let draws = DrawList::new(scene, |m| meshes[m].as_ref().is_some_and(|mesh| mesh.bent));
         let mut on_gpu = Self {
             meshes,
             materials: materials::upload(gpu, layouts, scene),
-            draws: DrawList::new(scene),
+            draws,
             instances: scene.instances.clone(),
             lights: scene.lights.clone(),
             shapes: Shapes::new(gpu, scene)?,

@@ -5,6 +5,8 @@
 override ROUGH: bool = false;
 // Some light has a shape of its own.
 override SHAPED: bool = false;
+// The mesh is coarse: light fades before its facets turn away.
+override BENT: bool = false;
 
 const PI: f32 = 3.14159265358979;
 
@@ -40,6 +42,14 @@ fn reflectance(s: Surface, v: vec3<f32>, l: vec3<f32>) -> vec3<f32> {
     return (diffuse + fresnel * highlight) * n_l;
 }
 
+// The share of a light in direction `l` that a coarse surface takes. It is 0 wherever a facet could have turned away, and
+// times the cosine it leaves 0 as steeply as the cosine itself does, to join it where all facets surely face the light.
+fn terminator(s: Surface, l: vec3<f32>) -> f32 {
+    let bend = clamp(s.bend, 1e-6, 0.9);
+    let x = clamp((dot(s.smooth_normal, l) - bend) / (min(2.5 * bend, 1.0) - bend), 0.0, 1.0);
+    return x * (2.0 - x);
+}
+
 // Radiance towards the eye from one light that is not blocked.
 fn reflected(light: Light, s: Surface, position: vec3<f32>, eye: vec3<f32>) -> vec3<f32> {
     let to_light = light.position - position * light.placed;
@@ -62,5 +72,8 @@ fn reflected(light: Light, s: Surface, position: vec3<f32>, eye: vec3<f32>) -> v
         }
     }
     let faces = dot(s.geometric_normal, direction) > 0.0;
+    if BENT {
+        share *= terminator(s, direction);
+    }
     return color * reflectance(s, eye, direction) * select(0.0, share, faces);
 }

@@ -42,6 +42,10 @@ struct Surface {
     emissive: vec3<f32>,
     // View space, unit: for shading, on the side of the eye for double-sided materials.
     normal: vec3<f32>,
+    // View space, unit: the normal without its texture.
+    smooth_normal: vec3<f32>,
+    // Sine of the greatest angle between that normal and the facets around it.
+    bend: f32,
     // View space, of any length: the triangle's own, on the side of the eye.
     geometric_normal: vec3<f32>,
     // View space: from pixel to pixel.
@@ -118,6 +122,8 @@ fn surface(in: Fragment, front: bool, eye: vec3<f32>) -> Surface {
     let outward = side * out.geometric_normal;
     // Meshes without normals are flat.
     var normal = unit_or(select(in.normal, outward, dot(in.normal, in.normal) == 0.0), eye);
+    out.smooth_normal = side * normal;
+    out.bend = in.bend * inverseSqrt(max(dot(in.normal, in.normal), 1e-30));
     if NORMAL {
         var tangent = vertex_tangent(in);
         var bitangent = vertex_bitangent(in);
