@@ -73,6 +73,9 @@ pub struct Render {
     /// 'exact' leaves it as the normals say. Shadows are the same.
     #[arg(long, value_name = "soft|exact", default_value = "soft", value_parser = parse_terminator)]
     pub terminator: Terminator,
+    /// Let blended and transmissive surfaces cast shadows as if they were solid.
+    #[arg(long)]
+    pub blended_shadows: bool,
     /// One more result, sampled at pixel centres; repeat it for several. KIND is shadow or stencil (PATH is a folder,
     /// light-<i>.png for each light), depth or position (.exr), normal or albedo (.exr or .png).
     #[arg(long = "aov", value_name = "KIND=PATH", value_parser = Aov::parse)]

@@ -16,7 +16,8 @@ use zfail_render::{AovKind, Aovs, FrameStats, Picture, RenderError, Renderer, Se
 /// If an argument names nothing in the scene, the scene or the device fails, or a file cannot be written.
 pub fn run(args: &args::Render) -> Result<(), Error> {
     check_outputs(args)?;
-    let scene = input::at_moment(input::complete(&args.scene.scene)?, &args.moment)?;
+    let mut scene = input::at_moment(input::complete(&args.scene.scene)?, &args.moment)?;
+    scene.blended_casts = args.blended_shadows;
     console::notices(&scene.notices, args.verbosity.quiet);
     let view = input::camera(&scene, &args.camera)?.view(args.size.0, &scene.bounds());
     let lights = input::lights(&scene, &args.lights)?;

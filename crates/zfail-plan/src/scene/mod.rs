@@ -10,7 +10,10 @@ mod pose;
 
 pub use bounds::Bounds;
 pub use light::{Light, LightKind, LightShape};
-pub use material::{AlphaMode, Filter, Image, Material, Texture, TextureRef, Wrap};
+pub use material::{
+    AlphaMode, Clearcoat, Filter, Image, Material, Sheen, Specular, SpecularGlossiness, Texture, TextureRef,
+    Transmission, Wrap,
+};
 pub use mesh::{Mesh, Primitive};
 pub use pose::Pose;
 
@@ -41,6 +44,8 @@ pub struct Scene {
     pub ambient: [f32; 3],
     /// Radiance of pixels that see no surface, linear RGB.
     pub background: [f32; 3],
+    /// Whether blended and transmissive surfaces cast shadows, as solid ones do.
+    pub blended_casts: bool,
     /// What the loader repaired, replaced or left out, for the user to read.
     pub notices: Vec<String>,
 }
@@ -85,7 +90,8 @@ impl Scene {
         bounds
     }
 
-    /// Whether triangle `triangle` of mesh `mesh` blocks light at all: blended materials let it through.
+    /// Whether triangle `triangle` of mesh `mesh` blocks light at all: blended materials let it through unless
+    /// [`Scene::blended_casts`].
     #[must_use]
     pub fn triangle_casts(&self, mesh: usize, triangle: usize) -> bool {
         self.triangle_surface(mesh, triangle) != Surface::Through
@@ -98,10 +104,12 @@ impl Scene {
             return Surface::Front;
         };
         match material.alpha {
-            AlphaMode::Blend => Surface::Through,
+            // No depth pass draws it.
+            _ if material.is_blended() && self.blended_casts => Surface::Partly,
+            _ if material.is_blended() => Surface::Through,
             AlphaMode::Mask(_) => Surface::Partly,
-            AlphaMode::Opaque if material.double_sided => Surface::BothSides,
-            AlphaMode::Opaque => Surface::Front,
+            _ if material.double_sided => Surface::BothSides,
+            _ => Surface::Front,
         }
     }
 }

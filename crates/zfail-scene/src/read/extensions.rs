@@ -2,6 +2,7 @@
 
 use super::error::{Fault, Result};
 use super::schema::Root;
+use super::treatment::{Treatment, extension_treatment};
 
 /// Read in full, or without influence on a still picture.
 const READ: &[&str] = &[
@@ -14,9 +15,6 @@ const READ: &[&str] = &[
     "KHR_xmp_json_ld",
     "KHR_xmp",
 ];
-
-/// Read in part; the loader says where it had to approximate.
-const APPROXIMATED: &[&str] = &["KHR_materials_pbrSpecularGlossiness", "KHR_materials_transmission"];
 
 /// Without these the data cannot be read at all, and how to get rid of them.
 const COMPRESSION: &[(&str, &str)] = &[
@@ -49,7 +47,8 @@ pub(super) fn check(root: &Root, notices: &mut Vec<String>) -> Result<()> {
 }
 
 fn notice(name: &str, required: bool) -> Option<String> {
-    if READ.contains(&name) || APPROXIMATED.contains(&name) {
+    // What is approximated is noted with the material that uses it.
+    if READ.contains(&name) || !matches!(extension_treatment(name), Treatment::Ignored(_)) {
         return None;
     }
     let name: String = name.chars().take(80).collect();

@@ -1,7 +1,7 @@
 //! glTF 2.0 files to scenes.
 //!
 //! Data flow one way: `container` (bytes to JSON and binary chunk) -> `schema` (typed JSON) -> `extensions` and
-//! `validate` (nothing is trusted before) -> `document` (buffers and accessors) -> `images`, `materials`
+//! `validate` (nothing is trusted before) -> `variants` -> `document` (buffers and accessors) -> `images`, `materials`
 //! -> `graph` (world transforms) -> `animations` -> `surface` -> `pose` -> `shading` -> `mesh` -> `instances`, `lights`.
 //!
 //! Whatever the bytes are, the result is a scene that satisfies the scene types' invariants or a [`LoadError`]; what
@@ -14,7 +14,7 @@
 //!   that have a matrix.
 //! - Replaced: missing normals (flat ones, on vertices of their own) and those without a direction, texture
 //!   coordinates and colours that are not finite, rotations without length, joint weights that do not add up to 1.
-//! - Approximated: specular-glossiness (diffuse colour alone) and transmission (blending).
+//! - Approximated: materials, as [`extension_treatment`] says of each extension.
 //! - Tolerated: a byte order mark, misaligned accessors, missing bounds of accessors, bytes after the end, a mesh or
 //!   a skin that nothing uses, key frames before time 0 and two at the same time.
 //! - Baked into meshes of their own, in world space: skins (in their rest pose, morph targets at their default
@@ -56,11 +56,14 @@ mod pose;
 mod schema;
 mod shading;
 mod surface;
+mod treatment;
 mod uri;
 mod validate;
+mod variants;
 
 pub use error::{Fault, LoadError};
 pub use limits::Limits;
+pub use treatment::{Treatment, extension_treatment};
 
 use crate::animate::Animated;
 use document::Document;
@@ -124,10 +127,23 @@ pub fn load_with_info(path: &Path, limits: &Limits) -> std::result::Result<(Scen
 /// # Errors
 /// As [`load`].
 pub fn load_animated(path: &Path, limits: &Limits) -> std::result::Result<(Animated, FileInfo), LoadError> {
-    read(path, limits).map_err(|fault| LoadError { file: path.into(), fault })
+    load_variant(path, limits, None)
 }
 
-fn read(path: &Path, limits: &Limits) -> Result<(Animated, FileInfo)> {
+/// [`load_animated`] with the materials of a variant (KHR_materials_variants), by its name or its number from 0; those that
+/// the file shows by default if `None`.
+///
+/// # Errors
+/// As [`load`], and if there is no such variant.
+pub fn load_variant(
+    path: &Path,
+    limits: &Limits,
+    variant: Option<&str>,
+) -> std::result::Result<(Animated, FileInfo), LoadError> {
+    read(path, limits, variant).map_err(|fault| LoadError { file: path.into(), fault })
+}
+
+fn read(path: &Path, limits: &Limits, variant: Option<&str>) -> Result<(Animated, FileInfo)> {
     let budget = Budget::new(*limits);
     let length = uri::regular_file_length(path).map_err(|problem| Fault::Unreadable(io::Error::other(problem)))?;
     budget.charge(length, 1, || "the file".into())?;
@@ -138,9 +154,10 @@ fn read(path: &Path, limits: &Limits) -> Result<(Animated, FileInfo)> {
     let mut notices = Vec::new();
     let container = container::open(&bytes, &mut notices)?;
     charge_json(container.json, &budget)?;
-    let root = parse(container.json)?;
+    let mut root = parse(container.json)?;
     extensions::check(&root, &mut notices)?;
     validate::check(&root)?;
+    variants::choose(&mut root, variant, &mut notices)?;
     let info = FileInfo::of(&root);
     let document = Document::open(root, container.bin, folder, budget)?;
 
@@ -188,7 +205,7 @@ fn read_materials(document: &Document<'_>, folder: &Path, scene: &mut Scene) -> 
     }
     let (textures, index) = materials::textures(&document.root, &index, &mut scene.notices);
     scene.textures = textures;
-    scene.materials = materials::materials(&document.root, &index, &mut scene.notices);
+    scene.materials = materials::materials(&document.root, &index, scene);
     Ok(index)
 }
 
