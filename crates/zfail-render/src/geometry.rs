@@ -9,7 +9,7 @@ use zfail_plan::scene::Mesh;
 pub struct MeshBuffers {
     /// Object space, `[f32; 3]` each: the bits that shadow volumes start from.
     positions: wgpu::Buffer,
-    /// With the bend in w, `[f32; 4]` each.
+    /// With the tilt (`terminator.rs`) in w, `[f32; 4]` each.
     normals: wgpu::Buffer,
     /// Both texture coordinates, then the colour: `[f32; 8]` each.
     paint: wgpu::Buffer,
@@ -17,8 +17,8 @@ pub struct MeshBuffers {
     tangents: wgpu::Buffer,
     /// `u32` each, three per triangle.
     indices: wgpu::Buffer,
-    /// Whether any vertex has a bend.
-    pub bent: bool,
+    /// Of the rest pose; `None` where the mesh is fine or flat.
+    pub tilts: Option<Vec<f32>>,
 }
 
 /// Which attributes a vertex stage reads; each kind reads those of the kinds before it.
@@ -26,7 +26,7 @@ pub struct MeshBuffers {
 pub enum Vertices {
     /// Positions.
     Depth,
-    /// And normals with their bends.
+    /// And normals with their tilts.
     Plain,
     /// And texture coordinates and colours.
     Textured,
@@ -84,13 +84,8 @@ impl MeshBuffers {
     /// Uploads `mesh`; attributes that it lacks become neutral.
     pub fn new(gpu: &Gpu, mesh: &Mesh) -> Result<Self, RenderError> {
         let count = mesh.positions.len();
-        let bends = terminator::bends(mesh);
-        let normals: Vec<[f32; 4]> = (0..count)
-            .map(|v| {
-                let [x, y, z] = mesh.normals.get(v).copied().unwrap_or_default();
-                [x, y, z, bends.as_ref().map_or(0.0, |bends| bends[v])]
-            })
-            .collect();
+        let tilts = terminator::tilts(mesh);
+        let normals = terminator::with_tilts(&mesh.normals, tilts.as_deref(), count);
         let mut tangents = mesh.tangents.clone();
         tangents.resize(count, [0.0; 4]);
         let paint: Vec<[f32; 8]> = (0..count)
@@ -108,7 +103,7 @@ impl MeshBuffers {
             paint: vertices(bytemuck::cast_slice(&paint))?,
             tangents: vertices(bytemuck::cast_slice(&tangents))?,
             indices: upload(gpu, &mesh.name, wgpu::BufferUsages::INDEX, bytemuck::cast_slice(&mesh.triangles))?,
-            bent: bends.is_some(),
+            tilts,
         })
     }
 

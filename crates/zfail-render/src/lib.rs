@@ -9,6 +9,7 @@
 mod aov;
 mod attribute_outputs;
 mod attribute_pass;
+mod blend_order;
 mod check;
 mod develop_pass;
 mod draw_list;

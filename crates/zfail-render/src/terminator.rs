@@ -1,6 +1,6 @@
-//! How far a smooth surface bends away from the triangles that stand for it.
+//! How far a smooth surface tilts away from the triangles that stand for it.
 //!
-//! In: a mesh. Out: per vertex its bend, the sine of the greatest angle between its normal and the normals of the
+//! In: a mesh. Out: per vertex its tilt, the sine of the greatest angle between its normal and the normals of the
 //! facets around it. A facet that
 //! turns away from a light lies in its own shadow, exactly and with a straight border, while the interpolated normal may
 //! still face the light: along the terminator of a coarse mesh that shows as teeth. Where the light's angle to the normal
@@ -16,18 +16,21 @@ use zfail_plan::scene::Mesh;
 
 /// Sines up to this leave teeth that are darker than a step of the picture: such meshes are fine as they are.
 const FINE: f32 = 0.02;
-/// Cosines of the angles between which a bend turns from a curve, which is faded, to a crease: light that ends at a crease
+/// Cosines of the angles between which a tilt turns from a curve, which is faded, to a crease: light that ends at a crease
 /// is what one expects to see there.
 const CURVE: f32 = 0.8;
 const CREASE: f32 = 0.5;
-/// The sine from which on a bend counts for less: on a body of very few facets all of it would be in the fade.
-const COARSE: f32 = 0.3;
+/// The sine from which on a tilt counts for less: on a body of very few facets all of it would be in the fade.
+const KNEE: f32 = 0.3;
 
-/// The bend at every vertex of `mesh`, or `None` where nothing needs to be faded: flat-shaded and well-tessellated meshes.
+/// The tilt at every vertex of `mesh`, or `None` where nothing needs to be faded: flat-shaded and well-tessellated meshes.
 ///
 /// It depends on positions, normals and triangles alone. Vertices that differ in texture coordinates only have the same.
-pub fn bends(mesh: &Mesh) -> Option<Vec<f32>> {
-    let mut bends = vec![0.0_f32; mesh.positions.len()];
+///
+/// A skinned or morphed mesh may keep those of its rest pose: a joint that bends further shows a little of its facets, and
+/// nothing flickers.
+pub fn tilts(mesh: &Mesh) -> Option<Vec<f32>> {
+    let mut tilts = vec![0.0_f32; mesh.positions.len()];
     let normals: Vec<Vec3> = mesh.normals.iter().map(|&n| Vec3::from(n).normalize_or_zero()).collect();
     for triangle in &mesh.triangles {
         let [a, b, c] = triangle.map(|v| Vec3::from(mesh.positions[v as usize]));
@@ -36,10 +39,10 @@ pub fn bends(mesh: &Mesh) -> Option<Vec<f32>> {
         let facet = u.cross(v).normalize_or_zero();
         for v in triangle.map(|v| v as usize) {
             let Some(normal) = normals.get(v) else { continue };
-            bends[v] = bends[v].max(bend(*normal, facet));
+            tilts[v] = tilts[v].max(tilt(*normal, facet));
         }
     }
-    if bends.iter().all(|&b| b <= FINE) {
+    if tilts.iter().all(|&b| b <= FINE) {
         return None;
     }
     let mut welded: HashMap<[u32; 6], f32> = HashMap::new();
@@ -47,18 +50,25 @@ pub fn bends(mesh: &Mesh) -> Option<Vec<f32>> {
         let ([x, y, z], n) = (mesh.positions[v], normals.get(v).copied().unwrap_or_default());
         [x, y, z, n.x, n.y, n.z].map(f32::to_bits)
     };
-    for (v, &bend) in bends.iter().enumerate() {
+    for (v, &tilt) in tilts.iter().enumerate() {
         let greatest = welded.entry(key(v)).or_default();
-        *greatest = greatest.max(bend);
+        *greatest = greatest.max(tilt);
     }
-    Some((0..bends.len()).map(|v| welded.get(&key(v)).copied().unwrap_or_default()).collect())
+    Some((0..tilts.len()).map(|v| welded.get(&key(v)).copied().unwrap_or_default()).collect())
+}
+
+/// Normals as the vertex stage reads them: the tilt in w.
+pub fn with_tilts(normals: &[[f32; 3]], tilts: Option<&[f32]>, count: usize) -> Vec<[f32; 4]> {
+    let tilt = |v: usize| tilts.and_then(|tilts| tilts.get(v)).copied().unwrap_or_default();
+    let normal = |v: usize| normals.get(v).copied().unwrap_or_default();
+    (0..count).map(|v| [normal(v)[0], normal(v)[1], normal(v)[2], tilt(v)]).collect()
 }
 
 /// The sine of the angle between two unit vectors, or less where the two are coarse or a crease.
-fn bend(normal: Vec3, facet: Vec3) -> f32 {
+fn tilt(normal: Vec3, facet: Vec3) -> f32 {
     let curve = (normal.dot(facet) - CREASE) / (CURVE - CREASE);
     let sine = normal.cross(facet).length();
-    sine.min(COARSE + 0.4 * (sine - COARSE)) * curve.clamp(0.0, 1.0)
+    sine.min(KNEE + 0.4 * (sine - KNEE)) * curve.clamp(0.0, 1.0)
 }
 
 #[cfg(test)]
@@ -80,26 +90,26 @@ mod tests {
     }
 
     #[test]
-    fn smooth_edges_bend_and_flat_ones_do_not() {
-        let bends = bends(&roof(0.4, true)).expect("it is bent");
-        let ridge = COARSE + 0.4 * (0.4_f32.sin() - COARSE);
+    fn facets_of_smooth_edges_are_tilted() {
+        let tilts = tilts(&roof(0.4, true)).expect("it is curved");
+        let ridge = KNEE + 0.4 * (0.4_f32.sin() - KNEE);
         let expected = [ridge, ridge, 0.0];
-        for (v, bend) in bends.iter().enumerate() {
-            assert!((bend - expected[v % 3]).abs() < 1e-6, "vertex {v}: {bend}");
+        for (v, tilt) in tilts.iter().enumerate() {
+            assert!((tilt - expected[v % 3]).abs() < 1e-6, "vertex {v}: {tilt}");
         }
-        assert_eq!(super::bends(&roof(0.2, true)).expect("it is bent")[0], 0.2_f32.sin());
-        assert_eq!(super::bends(&roof(0.4, false)), None);
-        assert_eq!(super::bends(&roof(0.01, true)), None, "well tessellated");
-        assert_eq!(super::bends(&roof(1.1, true)), None, "a crease");
-        assert_eq!(super::bends(&Mesh { normals: Vec::new(), ..roof(0.4, true) }), None);
+        assert_eq!(super::tilts(&roof(0.2, true)).expect("it is curved")[0], 0.2_f32.sin());
+        assert_eq!(super::tilts(&roof(0.4, false)), None);
+        assert_eq!(super::tilts(&roof(0.01, true)), None, "well tessellated");
+        assert_eq!(super::tilts(&roof(1.1, true)), None, "a crease");
+        assert_eq!(super::tilts(&Mesh { normals: Vec::new(), ..roof(0.4, true) }), None);
     }
 
     #[test]
-    fn seams_share_their_bend() {
+    fn seams_share_their_tilt() {
         let mut mesh = roof(0.4, true);
         mesh.triangles.truncate(1);
-        let bends = bends(&mesh).expect("it is bent");
-        assert_eq!([bends[3], bends[4]], [bends[0], bends[1]], "no triangle of their own");
-        assert!(bends[0] > 0.3);
+        let tilts = tilts(&mesh).expect("it is curved");
+        assert_eq!([tilts[3], tilts[4]], [tilts[0], tilts[1]], "no triangle of their own");
+        assert!(tilts[0] > 0.3);
     }
 }
