@@ -7,7 +7,7 @@ use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use zfail_render::wgpu::Backends;
-use zfail_render::{AovKind, Exposure, Technique};
+use zfail_render::{AovKind, Exposure, Technique, Terminator};
 use zfail_scene::Limits;
 
 /// Exact stencil shadows of glTF scenes: every shadow boundary to the pixel, without bias and without a shadow map.
@@ -75,6 +75,10 @@ pub struct Render {
     #[arg(long, value_name = "EV|auto", default_value = "auto", allow_negative_numbers = true)]
     #[arg(value_parser = parse_exposure)]
     pub exposure: Exposure,
+    /// How light ends where smooth surfaces turn away from it: 'soft' fades it before the triangles of a coarse mesh show,
+    /// 'exact' leaves it as the normals say. Shadows are the same.
+    #[arg(long, value_name = "soft|exact", default_value = "soft", value_parser = parse_terminator)]
+    pub terminator: Terminator,
     /// One more result, sampled at pixel centres; repeat it for several. KIND is shadow or stencil (PATH is a folder,
     /// light-<i>.png for each light), depth or position (.exr), normal or albedo (.exr or .png).
     #[arg(long = "aov", value_name = "KIND=PATH", value_parser = Aov::parse)]
@@ -197,6 +201,12 @@ pub struct Loading {
     /// mask's shape: triangles are cut along the contour of alpha on load, at most PIXELS of the texture's pixels off).
     #[arg(long, value_name = "off|solid|cut=PIXELS", default_value = "cut=1", value_parser = AlphaShadows::parse)]
     pub alpha_shadows: AlphaShadows,
+    /// Let blended and transmissive surfaces cast shadows as if they were solid.
+    #[arg(long)]
+    pub blended_shadows: bool,
+    /// Show the file with the materials of this variant, by name or index, instead of its default ones.
+    #[arg(long, value_name = "NAME|N")]
+    pub variant: Option<String>,
 }
 
 impl Loading {
@@ -428,6 +438,14 @@ fn parse_samples(text: &str) -> Result<u32, String> {
     }
 }
 
+fn parse_terminator(text: &str) -> Result<Terminator, String> {
+    match text {
+        "soft" => Ok(Terminator::Soft),
+        "exact" => Ok(Terminator::Exact),
+        _ => Err("it must be soft or exact".to_owned()),
+    }
+}
+
 fn parse_exposure(text: &str) -> Result<Exposure, String> {
     if text == "auto" {
         return Ok(Exposure::Auto);
@@ -548,7 +566,7 @@ mod tests {
             assert!(Limit::parse(wrong).is_err(), "{wrong}");
         }
         let limits = vec![Limit::Memory(1), Limit::ImageSide(2), Limit::Memory(3)];
-        let loading = Loading { limits, alpha_shadows: AlphaShadows::Solid };
+        let loading = Loading { limits, alpha_shadows: AlphaShadows::Solid, blended_shadows: false, variant: None };
         let Limits { bytes, image_side, .. } = loading.limits();
         assert_eq!((bytes, image_side), (3, 2));
     }

@@ -6,7 +6,7 @@ use crate::names;
 use std::path::Path;
 use zfail_plan::scene::{MaskCasting, Scene};
 use zfail_render::{Gpu, GpuOptions};
-use zfail_scene::{Animated, FileInfo, Limits, builtin, cut};
+use zfail_scene::{Animated, FileInfo, builtin, cut};
 
 const BUILTIN: &str = "builtin:";
 
@@ -16,13 +16,14 @@ const BUILTIN: &str = "builtin:";
 /// # Errors
 /// If the file cannot be used, or there is no such built-in scene.
 pub fn read(scene: &str, loading: &Loading) -> Result<(Animated, Option<FileInfo>), Error> {
-    let (mut animated, file) = open(scene, &loading.limits())?;
+    let (mut animated, file) = open(scene, loading)?;
+    animated.scene.blended_casts = loading.blended_shadows;
     shape_shadows(&mut animated, loading.alpha_shadows);
     Ok((animated, file))
 }
 
 /// Prepares masked surfaces for the shadows that they are to cast.
-pub fn shape_shadows(animated: &mut Animated, masks: AlphaShadows) {
+fn shape_shadows(animated: &mut Animated, masks: AlphaShadows) {
     match masks {
         AlphaShadows::Off => animated.scene.mask_casting = MaskCasting::Off,
         AlphaShadows::Solid => animated.scene.mask_casting = MaskCasting::Solid,
@@ -32,13 +33,13 @@ pub fn shape_shadows(animated: &mut Animated, masks: AlphaShadows) {
     }
 }
 
-fn open(scene: &str, limits: &Limits) -> Result<(Animated, Option<FileInfo>), Error> {
+fn open(scene: &str, loading: &Loading) -> Result<(Animated, Option<FileInfo>), Error> {
     if let Some(name) = scene.strip_prefix(BUILTIN) {
         let scene = builtin::animated(name).ok_or_else(|| names::unknown("built-in scene", name, &builtin_names()))?;
         return Ok((scene, None));
     }
     let path = Path::new(scene);
-    match zfail_scene::load_animated(path, limits) {
+    match zfail_scene::load_variant(path, &loading.limits(), loading.variant.as_deref()) {
         Ok((scene, info)) => Ok((scene, Some(info))),
         Err(e) if !path.exists() && builtin_names().contains(&scene) => {
             Err(Error::failed(format!("{}; the built-in scene of that name is '{BUILTIN}{scene}'", chain(&e))))

@@ -117,6 +117,7 @@ mod tests {
             extent: 1.0,
             instance: 0,
             index: 0,
+            visible: true,
             masked: false,
             double_sided: false,
             casts: true,

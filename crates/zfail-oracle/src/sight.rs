@@ -93,6 +93,9 @@ impl Looker<'_> {
         let mut found: Vec<Candidate<'_>> = Vec::new();
         self.bvh.visit(origin, ray.direction, f64::INFINITY, width, |index, reach| {
             let triangle = &self.soup.triangles[index as usize];
+            if !triangle.visible {
+                return;
+            }
             let steepness = triangle.normal.dot(ray.direction) / (triangle.normal.length() * length);
             if steepness > EDGE_ON && !triangle.double_sided {
                 return;

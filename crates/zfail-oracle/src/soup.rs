@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 use std::collections::HashMap;
-use zfail_plan::scene::{AlphaMode, Scene};
+use zfail_plan::scene::{AlphaMode, Material, Scene};
 
 /// A triangle as the oracle sees it.
 #[derive(Clone, Debug)]
@@ -21,6 +21,8 @@ pub(crate) struct Triangle {
     pub instance: u32,
     /// Index in its mesh.
     pub index: u32,
+    /// Seen by the camera: blended triangles are not, also where they cast.
+    pub visible: bool,
     /// Drawn where alpha is high enough.
     pub masked: bool,
     pub double_sided: bool,
@@ -40,7 +42,7 @@ impl Triangle {
     }
 }
 
-/// All opaque and masked triangles with an area: blended ones are no surfaces and block no light.
+/// All opaque and masked triangles with an area: blended ones are no surfaces, and here only if they block light.
 #[derive(Clone, Debug)]
 pub(crate) struct Soup {
     /// World position of the list's zero.
@@ -66,14 +68,14 @@ impl Soup {
             for (t, corners) in mesh.triangles.iter().enumerate() {
                 let material = mesh.material_of(t).and_then(|m| scene.materials.get(m));
                 let alpha = material.map_or(AlphaMode::Opaque, |m| m.alpha);
-                let blended = alpha == AlphaMode::Blend;
+                let blended = material.is_some_and(Material::is_blended);
                 let object = corners.map(|c| mesh.position(c));
                 let mut v = object.map(|p| linear * p + translation);
                 if mirrored {
                     v.swap(1, 2);
                 }
                 let normal = (v[1] - v[0]).cross(v[2] - v[0]);
-                if normal == DVec3::ZERO || blended {
+                if normal == DVec3::ZERO || blended && !scene.blended_casts {
                     continue;
                 }
                 triangles.push(Triangle {
@@ -83,6 +85,7 @@ impl Soup {
                     extent: magnitude * object.iter().map(|p| p.abs().element_sum()).fold(0.0, f64::max),
                     instance: i as u32,
                     index: t as u32,
+                    visible: !blended,
                     masked: matches!(alpha, AlphaMode::Mask(_)),
                     double_sided: material.is_some_and(|m| m.double_sided),
                     casts: instance.casts_shadow && material.is_none_or(|_| scene.triangle_casts(instance.mesh, t)),

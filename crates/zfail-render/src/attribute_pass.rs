@@ -10,8 +10,8 @@ use crate::targets::{self, Attributes, view};
 use crate::{Gpu, shader};
 use std::collections::HashMap;
 
-/// What a pipeline depends on: textures, mask, two sides, winding.
-type Key = ([bool; 5], bool, bool, bool);
+/// What a pipeline depends on: the look as far as it matters here, winding.
+type Key = (Look, bool);
 
 /// Pipelines of the pass, made when they are first needed.
 #[derive(Debug, Default)]
@@ -55,20 +55,13 @@ impl AttributePass {
 }
 
 fn key(look: Look, draw: &Draw) -> Key {
-    (look.textured, look.alpha == Alpha::Mask, look.double_sided, draw.mirrored)
+    // Light does not matter.
+    (Look { unlit: false, rough: false, coarse: false, ..look }, draw.mirrored)
 }
 
-fn create(gpu: &Gpu, layouts: &Layouts, (textured, mask, double_sided, mirrored): Key) -> wgpu::RenderPipeline {
-    let [base_color, metallic_roughness, normal, occlusion, emissive] = textured;
-    let constants = [
-        ("BASE_COLOR", base_color),
-        ("METALLIC_ROUGHNESS", metallic_roughness),
-        ("NORMAL", normal),
-        ("OCCLUSION", occlusion),
-        ("EMISSIVE", emissive),
-        ("ALPHA_MASK", mask),
-    ]
-    .map(|(name, value)| (name, f64::from(u8::from(value))));
+fn create(gpu: &Gpu, layouts: &Layouts, (look, mirrored): Key) -> wgpu::RenderPipeline {
+    let mask = f64::from(u8::from(look.alpha == Alpha::Mask));
+    let constants: Vec<_> = look.constants().chain([("ALPHA_MASK", mask)]).collect();
     let recipe = Recipe {
         program: shader::DESCRIBE,
         entry: "describe",
@@ -78,6 +71,6 @@ fn create(gpu: &Gpu, layouts: &Layouts, (textured, mask, double_sided, mirrored)
         depth_stencil: Some(depth_test(gpu.depth_stencil, wgpu::CompareFunction::GreaterEqual, true)),
         samples: 1,
     };
-    let cull = if double_sided { None } else { Some(wgpu::Face::Back) };
+    let cull = if look.double_sided { None } else { Some(wgpu::Face::Back) };
     recipe.scene(&gpu.device, Vertices::Mapped, mirrored, cull)
 }

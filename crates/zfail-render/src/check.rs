@@ -1,6 +1,7 @@
 //! The rules of the scene types, so that no index goes astray later.
 
 use crate::RenderError;
+use crate::draw_list::material_slots;
 use zfail_plan::scene::{Pose, Scene};
 
 /// Checks every index and size in `scene`.
@@ -18,14 +19,7 @@ pub fn scene(scene: &Scene) -> Result<(), RenderError> {
         }
     }
     for (i, m) in scene.materials.iter().enumerate() {
-        let slots = [
-            m.base_color_texture,
-            m.metallic_roughness_texture,
-            m.normal_texture,
-            m.occlusion_texture,
-            m.emissive_texture,
-        ];
-        if let Some(slot) = slots.into_iter().flatten().find(|slot| slot.texture >= scene.textures.len()) {
+        if let Some(slot) = material_slots(m).into_iter().flatten().find(|slot| slot.texture >= scene.textures.len()) {
             return fail(format!("material {i} refers to texture {}, which does not exist", slot.texture));
         }
     }

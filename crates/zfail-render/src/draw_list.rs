@@ -1,10 +1,12 @@
 //! What is drawn, how it looks, and in which order: one draw for all instances of a mesh that share a material.
 
+use crate::blend_order::BlendOrder;
 use crate::geometry::Vertices;
 use std::cmp::Ordering;
 use std::ops::Range;
 use zfail_plan::glam::DVec3;
-use zfail_plan::scene::{AlphaMode, Bounds, Instance, Material, Mesh, Scene};
+use zfail_plan::scene::{AlphaMode, Bounds, Instance, Material, Mesh, Scene, Specular, TextureRef};
+use zfail_plan::scissor;
 use zfail_plan::view::View;
 
 /// One primitive of a mesh.
@@ -29,15 +31,28 @@ pub struct Look {
     pub double_sided: bool,
     /// No light applies.
     pub unlit: bool,
-    /// Which slots have textures: base colour, metallic-roughness, normal, occlusion, emissive.
-    pub textured: [bool; 5],
+    /// Which of [`material_slots`] have textures.
+    pub textured: [bool; SLOTS],
+    pub layers: Layers,
     /// The mesh has vertex colours.
     pub colored: bool,
     /// Roughness is 1 everywhere.
     pub rough: bool,
+    /// Light fades before facets turn away.
+    pub coarse: bool,
 }
 
-/// [`AlphaMode`] without its number.
+/// What a material has beyond metallic-roughness.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Layers {
+    pub specular_glossiness: bool,
+    pub specular: bool,
+    pub clearcoat: bool,
+    pub sheen: bool,
+    pub transmission: bool,
+}
+
+/// [`AlphaMode`] without its number; transmissive surfaces are blended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Alpha {
     Opaque,
@@ -46,19 +61,52 @@ pub enum Alpha {
 }
 
 impl Look {
-    fn new(material: &Material, mesh: &Mesh) -> Self {
+    /// The override constants of `material.wgsl` and `light.wgsl`.
+    pub fn constants(self) -> impl Iterator<Item = (&'static str, f64)> {
+        const TEXTURED: [&str; SLOTS] = [
+            "BASE_COLOR",
+            "METALLIC_ROUGHNESS",
+            "NORMAL",
+            "OCCLUSION",
+            "EMISSIVE",
+            "SPECULAR_COLOR",
+            "CLEARCOAT_TEXTURE",
+            "SHEEN_TEXTURE",
+            "TRANSMISSION_TEXTURE",
+        ];
+        let layers = [
+            ("SPECULAR_GLOSSINESS", self.layers.specular_glossiness),
+            ("SPECULAR", self.layers.specular),
+            ("CLEARCOAT", self.layers.clearcoat),
+            ("SHEEN", self.layers.sheen),
+            ("TRANSMISSION", self.layers.transmission),
+        ];
+        TEXTURED.into_iter().zip(self.textured).chain(layers).map(|(name, value)| (name, f64::from(u8::from(value))))
+    }
+
+    fn new(material: &Material, mesh: &Mesh, coarse: bool) -> Self {
         let slots = material_slots(material);
         Self {
             alpha: match material.alpha {
-                AlphaMode::Opaque => Alpha::Opaque,
+                _ if material.is_blended() => Alpha::Blend,
                 AlphaMode::Mask(_) => Alpha::Mask,
-                AlphaMode::Blend => Alpha::Blend,
+                _ => Alpha::Opaque,
             },
             double_sided: material.double_sided,
             unlit: material.unlit,
             textured: slots.map(|slot| slot.is_some()),
             colored: mesh.colors.iter().any(|&c| c != [1.0; 4]),
-            rough: material.roughness >= 1.0 && material.metallic_roughness_texture.is_none(),
+            layers: Layers {
+                specular_glossiness: material.specular_glossiness.is_some(),
+                specular: material.specular != Specular::default(),
+                clearcoat: material.clearcoat.is_some(),
+                sheen: material.sheen.is_some(),
+                transmission: material.transmission.is_some(),
+            },
+            rough: material.roughness >= 1.0
+                && material.metallic_roughness_texture.is_none()
+                && material.specular_glossiness.is_none(),
+            coarse,
         }
     }
 
@@ -74,14 +122,22 @@ impl Look {
     }
 }
 
-/// The texture slots in the order of the shaders.
-pub fn material_slots(material: &Material) -> [Option<zfail_plan::scene::TextureRef>; 5] {
+/// Textures of a material.
+pub const SLOTS: usize = 9;
+
+/// The texture slots in the order of the shaders: base colour, metallic-roughness or specular-glossiness, normal, occlusion,
+/// emissive, specular colour, clearcoat, sheen, transmission.
+pub fn material_slots(material: &Material) -> [Option<TextureRef>; SLOTS] {
     [
         material.base_color_texture,
-        material.metallic_roughness_texture,
+        material.specular_glossiness.map_or(material.metallic_roughness_texture, |glossy| glossy.texture),
         material.normal_texture,
         material.occlusion_texture,
         material.emissive_texture,
+        material.specular.color_texture,
+        material.clearcoat.and_then(|coat| coat.texture),
+        material.sheen.and_then(|sheen| sheen.texture),
+        material.transmission.and_then(|transmission| transmission.texture),
     ]
 }
 
@@ -94,6 +150,8 @@ pub struct Draw {
     pub mirrored: bool,
     /// Range of [`DrawList::order`].
     pub slots: Range<u32>,
+    /// Range of [`BlendOrder::indices`], if its triangles are sorted.
+    pub sorted: Option<Range<u32>>,
 }
 
 /// Everything the scene shows, ordered for one view. Its memory is kept from frame to frame.
@@ -106,8 +164,10 @@ pub struct DrawList {
     pub order: Vec<usize>,
     /// Opaque and masked.
     pub solid: Vec<Draw>,
-    /// From the farthest to the nearest, equals in scene order.
+    /// Those in view, from the farthest to the nearest, equals in scene order.
     pub blended: Vec<Draw>,
+    /// Of the triangles of each.
+    pub blend_order: BlendOrder,
     /// Has any blended part.
     pub blends: bool,
     distances: Vec<f64>,
@@ -121,8 +181,8 @@ impl DrawList {
         self.solid.iter().map(triangles).sum::<usize>().try_into().unwrap_or(u32::MAX)
     }
 
-    /// Lists the parts of a scene that has passed [`crate::check::scene`].
-    pub fn new(scene: &Scene) -> Self {
+    /// Lists the parts of a scene that has passed [`crate::check::scene`]; `coarse` tells which meshes are.
+    pub fn new(scene: &Scene, coarse: impl Fn(usize) -> bool) -> Self {
         let default = Material::default();
         let mut parts = Vec::new();
         for (m, mesh) in scene.meshes.iter().enumerate() {
@@ -132,17 +192,20 @@ impl DrawList {
                     mesh: m,
                     material: primitive.material.unwrap_or(scene.materials.len()),
                     indices: primitive.triangles.start * 3..primitive.triangles.end * 3,
-                    look: Look::new(primitive.material.map_or(&default, |m| &scene.materials[m]), mesh),
+                    look: Look::new(primitive.material.map_or(&default, |m| &scene.materials[m]), mesh, coarse(m)),
                     center: Bounds::of(triangles.iter().flatten().map(|&v| mesh.position(v))).center(),
                 });
             }
         }
+        let blended = parts.iter().enumerate().filter(|(_, p)| p.look.alpha == Alpha::Blend);
+        let blend_order = BlendOrder::new(&scene.meshes, blended);
         let blends = parts.iter().any(|p| p.look.alpha == Alpha::Blend);
         Self {
             parts,
             order: (0..scene.instances.len()).collect(),
             solid: Vec::new(),
             blended: Vec::new(),
+            blend_order,
             blends,
             distances: Vec::new(),
             mirrored: Vec::new(),
@@ -174,9 +237,10 @@ impl DrawList {
             let first = self.parts.partition_point(|p| p.mesh < mesh);
             for (part, p) in self.parts.iter().enumerate().skip(first).take_while(|(_, p)| p.mesh == mesh) {
                 if p.look.alpha == Alpha::Blend {
-                    self.blended.extend(slots.clone().map(|s| Draw { part, mirrored, slots: s..s + 1 }));
+                    let seen = slots.clone().filter(|&s| in_view(view, &bounds[self.order[s as usize]]));
+                    self.blended.extend(seen.map(|s| Draw { part, mirrored, slots: s..s + 1, sorted: None }));
                 } else {
-                    self.solid.push(Draw { part, mirrored, slots: slots.clone() });
+                    self.solid.push(Draw { part, mirrored, slots: slots.clone(), sorted: None });
                 }
             }
         }
@@ -191,5 +255,11 @@ impl DrawList {
             Ordering::Equal => (instance(a), a.part).cmp(&(instance(b), b.part)),
             order => order,
         });
+        self.blend_order.arrange(view, instances, order, parts, &mut self.blended);
     }
+}
+
+/// Whether anything within `bounds` (world space) can be seen.
+fn in_view(view: &View, bounds: &Bounds) -> bool {
+    scissor::of_ball(view, bounds.center() - view.eye(), bounds.half().length()).is_some()
 }

@@ -8,7 +8,7 @@ use crate::layouts::Layouts;
 use crate::pipeline::{ADD, Recipe, depth_test};
 use crate::scene::SceneOnGpu;
 use crate::targets::{LDR, RADIANCE};
-use crate::{Gpu, shader};
+use crate::{Gpu, Settings, Terminator, shader};
 use std::collections::HashMap;
 
 /// What a pass over the scene does.
@@ -25,6 +25,8 @@ pub struct Step {
     pub shadows: Shadows,
     /// Adds more lights to what an earlier step has drawn.
     pub added: bool,
+    /// Light fades at the terminator of coarse meshes.
+    pub soft: bool,
 }
 
 /// How a step learns what is in shadow.
@@ -40,17 +42,24 @@ pub enum Shadows {
 }
 
 impl Step {
-    pub fn new(samples: u32, developed: bool, lights: &[LightRecord], shadows: Shadows, added: bool) -> Self {
-        let shaped = lights.iter().any(|light| light.shape != 0);
-        Self { samples, developed, lights: lights.len().min(UNROLLED + 1) as u32, shaped, shadows, added }
+    pub fn new(settings: &Settings, developed: bool, lights: &[LightRecord], shadows: Shadows, added: bool) -> Self {
+        Self {
+            samples: settings.samples,
+            developed,
+            lights: lights.len().min(UNROLLED + 1) as u32,
+            shaped: lights.iter().any(|light| light.shape != 0),
+            shadows,
+            added,
+            soft: settings.terminator == Terminator::Soft,
+        }
     }
 }
 
-/// What a pipeline depends on.
-type Key = (Look, bool, Step);
+/// What a pipeline depends on: the look, whether it is mirrored, whether its triangles are sorted.
+type Key = (Look, bool, bool, Step);
 
-/// Pipelines of the pass, made when they are first needed. Blended surfaces with two sides have two, inner sides first, and
-/// surfaces under [`Shadows::Stencil`] have one for lit and one for shadowed pixels.
+/// Pipelines of the pass, made when they are first needed. Blended surfaces with two sides and no order of triangles have
+/// two, inner sides first, transmissive ones have one that filters what is behind and one that adds to it, and surfaces under [`Shadows::Stencil`] have one for lit and one for shadowed pixels.
 #[derive(Debug, Default)]
 pub struct ForwardPass {
     pipelines: HashMap<Key, Vec<wgpu::RenderPipeline>>,
@@ -76,7 +85,7 @@ impl ForwardPass {
         draws: impl Iterator<Item = &'d Draw>,
     ) {
         for draw in draws {
-            let key = key(scene.draws.parts[draw.part].look, draw.mirrored, step);
+            let key = key(scene.draws.parts[draw.part].look, draw, step);
             self.pipelines.entry(key).or_insert_with(|| create(gpu, layouts, key));
         }
     }
@@ -106,32 +115,29 @@ impl ForwardPass {
             let part = &scene.draws.parts[draw.part];
             let Some(mesh) = &scene.meshes[part.mesh] else { continue };
             mesh.bind(&mut pass, part.look.vertices(), &frame.instances);
+            if draw.sorted.is_some() {
+                pass.set_index_buffer(scene.sorted.slice(..), wgpu::IndexFormat::Uint32);
+            }
             pass.set_bind_group(1, &scene.materials[part.material], &[]);
-            for pipeline in self.pipelines.get(&key(part.look, draw.mirrored, step)).into_iter().flatten() {
+            for pipeline in self.pipelines.get(&key(part.look, draw, step)).into_iter().flatten() {
                 pass.set_pipeline(pipeline);
-                pass.draw_indexed(part.indices.clone(), 0, draw.slots.clone());
+                let indices = draw.sorted.clone().unwrap_or(part.indices.clone());
+                pass.draw_indexed(indices, 0, draw.slots.clone());
             }
         }
     }
 }
 
-fn key(look: Look, mirrored: bool, step: Step) -> Key {
-    // No shadow falls on blended surfaces.
-    let shadows = if look.alpha == Alpha::Blend { Shadows::None } else { step.shadows };
-    (look, mirrored, Step { shadows, ..step })
+fn key(look: Look, draw: &Draw, step: Step) -> Key {
+    (look, draw.mirrored, draw.sorted.is_some(), step)
 }
 
-fn create(gpu: &Gpu, layouts: &Layouts, (look, mirrored, step): Key) -> Vec<wgpu::RenderPipeline> {
+fn create(gpu: &Gpu, layouts: &Layouts, (look, mirrored, sorted, step): Key) -> Vec<wgpu::RenderPipeline> {
     let blend = look.alpha == Alpha::Blend;
-    let [base_color, metallic_roughness, normal, occlusion, emissive] = look.textured;
-    let constants = [
-        ("BASE_COLOR", base_color),
-        ("METALLIC_ROUGHNESS", metallic_roughness),
-        ("NORMAL", normal),
-        ("OCCLUSION", occlusion),
-        ("EMISSIVE", emissive),
+    let flags = [
         ("ROUGH", look.rough),
         ("SHAPED", step.shaped),
+        ("COARSE", look.coarse && step.soft),
         // Masked surfaces have been cut out by the depth pass already.
         ("ALPHA_MASK", look.alpha == Alpha::Mask && step.shadows == Shadows::None),
         ("BLEND", blend),
@@ -140,6 +146,7 @@ fn create(gpu: &Gpu, layouts: &Layouts, (look, mirrored, step): Key) -> Vec<wgpu
         ("DEVELOPED", step.developed),
     ]
     .map(|(name, value)| (name, f64::from(u8::from(value))));
+    let constants: Vec<_> = look.constants().chain(flags).collect();
     let state = if blend {
         (wgpu::CompareFunction::Greater, false)
     } else if step.shadows != Shadows::None {
@@ -152,16 +159,13 @@ fn create(gpu: &Gpu, layouts: &Layouts, (look, mirrored, step): Key) -> Vec<wgpu
     if bits {
         groups.push(layouts.verdicts(step.samples));
     }
-    let target = wgpu::ColorTargetState {
-        format: if step.developed { LDR } else { RADIANCE },
-        blend: if blend {
-            Some(over(look.unlit))
-        } else if step.added {
-            Some(ADD)
-        } else {
-            None
-        },
-        write_mask: wgpu::ColorWrites::ALL,
+    let format = if step.developed { LDR } else { RADIANCE };
+    let target = |blend| wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL };
+    // Fragment entry points, and how they meet what is there.
+    let entries = match (blend, look.layers.transmission) {
+        (true, true) => vec![("filtered", Some(filter())), ("forward", Some(over(look.unlit)))],
+        (true, false) => vec![("forward", Some(over(look.unlit)))],
+        (false, _) => vec![("forward", step.added.then_some(ADD))],
     };
     let face = wgpu::StencilFaceState { compare: wgpu::CompareFunction::NotEqual, ..wgpu::StencilFaceState::IGNORE };
     let shadowed = wgpu::StencilState { front: face, back: face, read_mask: 0xff, write_mask: 0 };
@@ -169,23 +173,23 @@ fn create(gpu: &Gpu, layouts: &Layouts, (look, mirrored, step): Key) -> Vec<wgpu
         Shadows::Stencil => &[(step.lights, zfail::lit_stencil()), (0, shadowed)],
         Shadows::None | Shadows::Bits => &[(step.lights, wgpu::StencilState::default())],
     };
-    let faces: &[Option<wgpu::Face>] = match (blend, look.double_sided) {
+    let faces: &[Option<wgpu::Face>] = match (blend && !sorted, look.double_sided) {
         (true, true) => &[Some(wgpu::Face::Front), Some(wgpu::Face::Back)],
         (false, true) => &[None],
         (_, false) => &[Some(wgpu::Face::Back)],
     };
     let mut pipelines = Vec::new();
-    for (lights, stencil) in passes {
-        let mut constants = constants.to_vec();
+    for ((lights, stencil), &(entry, blend)) in passes.iter().flat_map(|pass| entries.iter().map(move |e| (pass, e))) {
+        let mut constants = constants.clone();
         constants.push(("LIGHTS", f64::from(*lights)));
         let depth_stencil = depth_test(gpu.depth_stencil, state.0, state.1);
         for &cull in faces {
             let recipe = Recipe {
                 program: shader::forward(look.vertices(), bits.then_some(step.samples)),
-                entry: "forward",
+                entry,
                 constants: &constants,
                 groups: &groups,
-                targets: &[Some(target.clone())],
+                targets: &[Some(target(blend))],
                 depth_stencil: Some(wgpu::DepthStencilState { stencil: stencil.clone(), ..depth_stencil.clone() }),
                 samples: step.samples,
             };
@@ -193,6 +197,16 @@ fn create(gpu: &Gpu, layouts: &Layouts, (look, mirrored, step): Key) -> Vec<wgpu
         }
     }
     pipelines
+}
+
+/// Leaves of what is there the share that passes.
+fn filter() -> wgpu::BlendState {
+    let filter = |dst_factor| wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::Zero,
+        dst_factor,
+        operation: wgpu::BlendOperation::Add,
+    };
+    wgpu::BlendState { color: filter(wgpu::BlendFactor::Src), alpha: filter(wgpu::BlendFactor::One) }
 }
 
 /// Covers what is there. The target's alpha is the share that is shown without exposure: unlit surfaces add to it.

@@ -1,7 +1,7 @@
 //! Vertex and index buffers of the scene's meshes, and how vertex stages read them.
 
 use crate::gpu_data::InstanceRecord;
-use crate::{Gpu, RenderError};
+use crate::{Gpu, RenderError, terminator};
 use zfail_plan::scene::{BentMesh, Mesh};
 
 /// A mesh on the device.
@@ -9,7 +9,7 @@ use zfail_plan::scene::{BentMesh, Mesh};
 pub struct MeshBuffers {
     /// Object space, `[f32; 3]` each: the bits that shadow volumes start from.
     positions: wgpu::Buffer,
-    /// `[f32; 3]` each.
+    /// With the tilt (`terminator.rs`) in w, `[f32; 4]` each.
     normals: wgpu::Buffer,
     /// Both texture coordinates, then the colour: `[f32; 8]` each.
     paint: wgpu::Buffer,
@@ -17,6 +17,8 @@ pub struct MeshBuffers {
     tangents: wgpu::Buffer,
     /// `u32` each, three per triangle.
     indices: wgpu::Buffer,
+    /// Of the rest pose; `None` where the mesh is fine or flat.
+    pub tilts: Option<Vec<f32>>,
 }
 
 /// Which attributes a vertex stage reads; each kind reads those of the kinds before it.
@@ -24,7 +26,7 @@ pub struct MeshBuffers {
 pub enum Vertices {
     /// Positions.
     Depth,
-    /// And normals.
+    /// And normals with their tilts.
     Plain,
     /// And texture coordinates and colours.
     Textured,
@@ -56,7 +58,7 @@ const ALL: [Option<wgpu::VertexBufferLayout<'static>>; 5] = [
         12 => Float32x3, 13 => Float32x3, 14 => Float32x3,
         15 => Uint32x2
     ]),
-    per_vertex(3, &wgpu::vertex_attr_array![1 => Float32x3]),
+    per_vertex(4, &wgpu::vertex_attr_array![1 => Float32x4]),
     per_vertex(8, &wgpu::vertex_attr_array![3 => Float32x4, 4 => Float32x4]),
     per_vertex(4, &wgpu::vertex_attr_array![2 => Float32x4]),
 ];
@@ -82,8 +84,8 @@ impl MeshBuffers {
     /// Uploads `mesh`; attributes that it lacks become neutral.
     pub fn new(gpu: &Gpu, mesh: &Mesh) -> Result<Self, RenderError> {
         let count = mesh.positions.len();
-        let mut normals = mesh.normals.clone();
-        normals.resize(count, [0.0; 3]);
+        let tilts = terminator::tilts(mesh);
+        let normals = terminator::with_tilts(&mesh.normals, tilts.as_deref(), count);
         let mut tangents = mesh.tangents.clone();
         tangents.resize(count, [0.0; 4]);
         let paint: Vec<[f32; 8]> = (0..count)
@@ -101,13 +103,15 @@ impl MeshBuffers {
             paint: vertices(bytemuck::cast_slice(&paint))?,
             tangents: vertices(bytemuck::cast_slice(&tangents))?,
             indices: upload(gpu, &mesh.name, wgpu::BufferUsages::INDEX, bytemuck::cast_slice(&mesh.triangles))?,
+            tilts,
         })
     }
 
     /// Replaces what bends.
     pub fn bend(&self, gpu: &Gpu, bent: &BentMesh) {
         gpu.queue.write_buffer(&self.positions, 0, bytemuck::cast_slice(&bent.positions));
-        gpu.queue.write_buffer(&self.normals, 0, bytemuck::cast_slice(&bent.normals));
+        let normals = terminator::with_tilts(&bent.normals, self.tilts.as_deref(), bent.positions.len());
+        gpu.queue.write_buffer(&self.normals, 0, bytemuck::cast_slice(&normals));
         gpu.queue.write_buffer(&self.tangents, 0, bytemuck::cast_slice(&bent.tangents));
     }
 

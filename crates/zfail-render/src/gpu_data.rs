@@ -1,5 +1,6 @@
 //! Structures shared with the shaders: one Rust twin per WGSL struct, of the same layout (tested).
 
+use crate::draw_list::SLOTS;
 use bytemuck::{Pod, Zeroable};
 
 /// How many lights shaders know without a loop: `UNROLLED` in `frame.wgsl`.
@@ -54,8 +55,18 @@ pub struct MaterialUniform {
     pub roughness: f32,
     pub normal_scale: f32,
     pub occlusion_strength: f32,
-    /// Base colour, metallic-roughness, normal, occlusion, emissive.
-    pub slots: [SlotUniform; 5],
+    /// Reflectance at normal incidence.
+    pub specular: [f32; 3],
+    pub specular_strength: f32,
+    pub sheen: [f32; 3],
+    pub sheen_roughness: f32,
+    pub tint: [f32; 3],
+    pub transmission: f32,
+    pub clearcoat: f32,
+    pub clearcoat_roughness: f32,
+    pub pad: [f32; 2],
+    /// Of `material_slots`.
+    pub slots: [SlotUniform; SLOTS],
 }
 
 /// `Light` in `frame.wgsl`.

@@ -1,5 +1,6 @@
 //! Bind group layouts: group 0 the frame, group 1 a material or the measured attributes, group 2 the verdicts.
 
+use crate::draw_list::SLOTS;
 use crate::gpu_data::{FrameUniform, LightRecord, MaterialUniform};
 use std::num::NonZeroU64;
 
@@ -19,7 +20,7 @@ impl Layouts {
         };
         let fragment = wgpu::ShaderStages::FRAGMENT;
         let mut material = vec![entry(0, fragment, uniform::<MaterialUniform>())];
-        for slot in 0..5 {
+        for slot in 0..SLOTS as u32 {
             material.push(entry(1 + 2 * slot, fragment, texture(FILTERED, false)));
             let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
             material.push(entry(2 + 2 * slot, fragment, sampler));

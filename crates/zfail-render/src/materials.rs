@@ -1,4 +1,4 @@
-//! Materials on the device: a uniform and five textures each.
+//! Materials on the device: a uniform and its textures each.
 
 use crate::Gpu;
 use crate::draw_list::material_slots;
@@ -6,6 +6,10 @@ use crate::gpu_data::{MaterialUniform, SlotUniform};
 use crate::layouts::{Layouts, bind};
 use crate::textures::Textures;
 use zfail_plan::scene::{AlphaMode, Material, Scene, TextureRef};
+
+/// How much a blended surface must cover to be the nearest layer, on which shadows fall: what is hardly there must not keep
+/// them from the layer behind.
+const LAYER: f32 = 0.125;
 
 /// The bind groups of the scene's materials and, after them, of the default material.
 pub fn upload(gpu: &Gpu, layouts: &Layouts, scene: &Scene) -> Vec<wgpu::BindGroup> {
@@ -16,14 +20,31 @@ pub fn upload(gpu: &Gpu, layouts: &Layouts, scene: &Scene) -> Vec<wgpu::BindGrou
 
 fn bind_group(gpu: &Gpu, layouts: &Layouts, textures: &mut Textures<'_>, material: &Material) -> wgpu::BindGroup {
     let slots = material_slots(material);
+    let (glossy, clearcoat) = (material.specular_glossiness, material.clearcoat);
+    let (sheen, transmission) = (material.sheen, material.transmission);
     let uniform = MaterialUniform {
         base_color: material.base_color,
         emissive: material.emissive,
-        alpha_cutoff: if let AlphaMode::Mask(cutoff) = material.alpha { cutoff } else { 0.0 },
+        alpha_cutoff: match material.alpha {
+            // Whatever its alpha, a transmissive surface is there.
+            AlphaMode::Opaque if transmission.is_some() => -1.0,
+            AlphaMode::Mask(cutoff) => cutoff,
+            AlphaMode::Blend => LAYER,
+            AlphaMode::Opaque => 0.0,
+        },
         metallic: material.metallic,
-        roughness: material.roughness,
+        roughness: glossy.map_or(material.roughness, |glossy| 1.0 - glossy.glossiness),
         normal_scale: material.normal_scale,
         occlusion_strength: material.occlusion_strength,
+        specular: glossy.map_or(material.specular.normal_reflectance(), |glossy| glossy.color),
+        specular_strength: material.specular.strength,
+        sheen: sheen.map_or([0.0; 3], |sheen| sheen.color),
+        sheen_roughness: sheen.map_or(0.0, |sheen| sheen.roughness),
+        tint: transmission.map_or([1.0; 3], |transmission| transmission.tint),
+        transmission: transmission.map_or(0.0, |transmission| transmission.share),
+        clearcoat: clearcoat.map_or(0.0, |coat| coat.strength),
+        clearcoat_roughness: clearcoat.map_or(0.0, |coat| coat.roughness),
+        pad: [0.0; 2],
         slots: slots.map(slot_uniform),
     };
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -33,8 +54,8 @@ fn bind_group(gpu: &Gpu, layouts: &Layouts, textures: &mut Textures<'_>, materia
         mapped_at_creation: false,
     });
     gpu.queue.write_buffer(&buffer, 0, bytemuck::bytes_of(&uniform));
-    // Base colour and emission are colours.
-    let srgb = [true, false, false, false, true];
+    // Base colour, emission, specular and sheen are colours.
+    let srgb = [true, glossy.is_some(), false, false, true, true, false, true, false];
     let bindings: Vec<_> = slots.into_iter().zip(srgb).map(|(slot, srgb)| textures.get(slot, srgb)).collect();
     let mut resources = vec![buffer.as_entire_binding()];
     for (view, sampler) in &bindings {

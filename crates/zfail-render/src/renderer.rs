@@ -158,18 +158,19 @@ impl<'g> Renderer<'g> {
         }
         let planning_ms = start.elapsed().as_secs_f64() * 1e3;
 
-        self.scene.arrange(view);
-        let parts = parts(active.len(), settings.shadows, self.scene.draws.blends);
+        self.scene.arrange(gpu, view);
+        let parts = parts(active.len(), settings.shadows, !self.scene.draws.blended.is_empty());
         let finish = if parts.len() > 1 { Finish::Darkroom } else { finish };
+        let divided = parts.iter().filter(|part| part.solid).count() > 1;
         let spans = Spans {
             shadows: settings.shadows,
             darkroom: finish == Finish::Darkroom,
             lights: if gpu.timestamps_inside { chosen.len() } else { 0 },
         };
         // Several steps would write the same queries.
-        self.timer.begin(gpu, if parts.len() > 1 { 0 } else { spans.count() });
+        self.timer.begin(gpu, if divided { 0 } else { spans.count() });
         for (number, part) in parts.iter().enumerate() {
-            self.step(view, &active, &kinds, &figures, &exposed, part, number > 0, finish, spans, samples)?;
+            self.step(view, &active, &kinds, &figures, &exposed, part, number > 0, finish, spans, settings)?;
         }
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         if finish == Finish::Darkroom {
@@ -217,9 +218,9 @@ impl<'g> Renderer<'g> {
         added: bool,
         finish: Finish,
         spans: Spans,
-        samples: u32,
+        settings: &Settings,
     ) -> Result<(), RenderError> {
-        let gpu = self.gpu;
+        let (gpu, samples) = (self.gpu, settings.samples);
         let (scene, layouts, timer) = (&self.scene, &self.layouts, &self.timer);
         let lights = &active[part.lights.clone()];
         let records: Vec<LightRecord> = lights.iter().map(|&l| exposed.lights[l]).collect();
@@ -233,15 +234,17 @@ impl<'g> Renderer<'g> {
             |l, slot| lights::reaches(&kinds[lights[l]], &scene.instance_bounds[scene.draws.order[slot]]),
         )?;
         let targets = self.targets.as_mut().ok_or_else(no_targets)?;
-        let shadowed = spans.shadows && part.solid;
+        // Blended surfaces have a verdict of their own: that on the nearest of them.
+        let layered = spans.shadows && !part.solid && lights.len() <= verdict_pass::LIGHTS;
+        let shadowed = spans.shadows && part.solid || layered;
         // Drawing everything twice is cheaper than a texture of verdicts unless there is more to draw than to fill.
         let few = scene.draws.solid_triangles() < view.size[0] * view.size[1] / 8;
-        let shadows = match (shadowed, records.len() == 1 && samples == 1 && few) {
+        let shadows = match (shadowed, records.len() == 1 && samples == 1 && few && !layered) {
             (false, _) => Shadows::None,
             (true, true) => Shadows::Stencil,
             (true, false) => Shadows::Bits,
         };
-        let step = Step::new(samples, finish == Finish::Forward, &records, shadows, added && part.solid);
+        let step = Step::new(settings, finish == Finish::Forward, &records, shadows, added && part.solid);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let depth_stencil = targets.depth_stencil.clone();
         if shadowed {
@@ -249,23 +252,32 @@ impl<'g> Renderer<'g> {
             let volumes = &scene.shadows;
             let pass =
                 self.verdicts.entry((samples, bits)).or_insert_with(|| VerdictPass::new(gpu, volumes, samples, bits));
-            pass.prepare(gpu, layouts, scene);
+            pass.prepare(gpu, layouts, scene, layered);
             let verdicts = lights.iter().map(|&light| Verdict {
                 light,
                 scissor: Some(figures[light].scissor).filter(|_| figures[light].has_shadow()),
-                span: spans.light(light),
+                span: spans.light(light).filter(|_| part.solid),
             });
-            let depth = targets.depth.clone().filter(|_| volumes.counts_tiles());
+            let (view, depth_stencil, depth) = if layered {
+                let layer = targets.layer(gpu, layouts);
+                (Some(layer.verdicts.view.clone()), layer.depth_stencil.clone(), layer.depth.clone())
+            } else {
+                let view = bits.then(|| targets.verdicts(gpu, layouts).view.clone());
+                (view, depth_stencil.clone(), targets.depth.clone())
+            };
+            let depth = depth.filter(|_| volumes.counts_tiles());
             let tiles = depth.as_ref().map(|depth| (&gpu.device, depth));
-            let view = bits.then(|| targets.verdicts(gpu, layouts).view.clone());
-            let targets = VerdictTargets { verdicts: view.as_ref(), depth_stencil: &depth_stencil, tiles };
-            pass.encode(&mut encoder, &targets, &self.frame, scene, verdicts, (timer, Some(0)));
+            let targets = VerdictTargets { verdicts: view.as_ref(), depth_stencil: &depth_stencil, tiles, layered };
+            pass.encode(&mut encoder, &targets, &self.frame, scene, verdicts, (timer, part.solid.then_some(0)));
         }
 
         let solid = scene.draws.solid.iter().filter(|_| part.solid);
         let draws = solid.chain(scene.draws.blended.iter().filter(|_| part.blended));
         self.forward.prepare(gpu, layouts, scene, step, draws.clone());
-        let verdicts = (shadows == Shadows::Bits).then(|| targets.verdicts(gpu, layouts).bind_group.clone());
+        let verdicts = (shadows == Shadows::Bits).then(|| match layered {
+            true => targets.layer(gpu, layouts).verdicts.bind_group.clone(),
+            false => targets.verdicts(gpu, layouts).bind_group.clone(),
+        });
         let color = match finish {
             Finish::Forward => {
                 let [r, g, b] = exposed.background.map(|c| c * exposed.exposure);
@@ -283,7 +295,7 @@ impl<'g> Renderer<'g> {
             color: color.ok_or_else(no_targets)?,
             depth_stencil: if shadowed || added { read_only(&depth_stencil) } else { cleared_depth(&depth_stencil) },
             verdicts: verdicts.as_ref(),
-            timestamp_writes: timer.pass(spans.forward()),
+            timestamp_writes: timer.pass(spans.forward()).filter(|_| part.solid),
         };
         self.forward.encode(&mut encoder, attachments, &self.frame, scene, step, draws);
         gpu.queue.submit([encoder.finish()]);
@@ -310,7 +322,7 @@ impl<'g> Renderer<'g> {
         let Some(Measured { attributes, shadow, mask, targets }) = &mut self.measured else {
             return Err(no_targets());
         };
-        self.scene.arrange(view);
+        self.scene.arrange(gpu, view);
         let exposed = Exposed::new(&self.scene, &chosen, settings.exposure, view);
         let placements = self.scene.draws.order.iter().map(|&i| &self.scene.instances[i].world_from_object);
         self.frame.update(gpu, &self.layouts, view, &exposed.shading(), placements, |_, _| true)?;
@@ -348,20 +360,21 @@ impl<'g> Renderer<'g> {
     }
 }
 
-/// Part of a frame. One is enough unless there are more lights than a texel of verdicts has bits.
+/// Part of a frame. One is enough unless shadows fall on blended surfaces, or there are more lights than a texel of
+/// verdicts has bits.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Part {
     /// Of the frame's lights.
     lights: Range<usize>,
     /// Draws solid surfaces.
     solid: bool,
-    /// Draws blended surfaces, which are lit by all lights at once.
+    /// Draws blended surfaces, which are lit by all lights at once: they have shadows if one texel holds all verdicts.
     blended: bool,
 }
 
 /// The parts of a frame in order.
 fn parts(lights: usize, shadows: bool, blends: bool) -> Vec<Part> {
-    if !shadows || lights <= verdict_pass::LIGHTS {
+    if !shadows || lights == 0 {
         return vec![Part { lights: 0..lights, solid: true, blended: blends }];
     }
     let starts = (0..lights).step_by(verdict_pass::LIGHTS);
@@ -551,6 +564,7 @@ mod tests {
         let whole = |lights: usize, blended| Part { lights: 0..lights, solid: true, blended };
         assert_eq!(parts(50, false, true), [whole(50, true)]);
         assert_eq!(parts(32, true, false), [whole(32, false)]);
+        assert_eq!(parts(32, true, true), [whole(32, false), Part { solid: false, ..whole(32, true) }]);
         let divided = parts(50, true, true);
         assert_eq!(divided.iter().map(|p| p.lights.clone()).collect::<Vec<_>>(), [0..32, 32..50, 0..50]);
         assert_eq!(

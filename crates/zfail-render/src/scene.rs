@@ -1,6 +1,6 @@
 //! A scene on the device: what stays from frame to frame.
 
-use crate::draw_list::DrawList;
+use crate::draw_list::{DrawList, material_slots};
 use crate::geometry::MeshBuffers;
 use crate::layouts::Layouts;
 use crate::shapes::Shapes;
@@ -19,6 +19,8 @@ pub struct SceneOnGpu {
     /// The last is the default material.
     pub materials: Vec<wgpu::BindGroup>,
     pub draws: DrawList,
+    /// [`crate::blend_order::BlendOrder::indices`] of the frame.
+    pub sorted: wgpu::Buffer,
     pub instances: Vec<Instance>,
     pub lights: Vec<Light>,
     pub shapes: Shapes,
@@ -78,10 +80,12 @@ impl SceneOnGpu {
             .materials
             .iter()
             .fold([0.0; 3], |greatest, m| std::array::from_fn(|c| f32::max(greatest[c], m.emissive[c])));
+        let draws = DrawList::new(scene, |m| meshes[m].as_ref().is_some_and(|mesh| mesh.tilts.is_some()));
         let mut on_gpu = Self {
             meshes,
             materials: materials::upload(gpu, layouts, scene),
-            draws: DrawList::new(scene),
+            draws,
+            sorted: index_buffer(gpu, 12),
             instances: scene.instances.clone(),
             lights: scene.lights.clone(),
             shapes: Shapes::new(gpu, scene)?,
@@ -149,8 +153,13 @@ impl SceneOnGpu {
     }
 
     /// Orders what is drawn for `view`.
-    pub fn arrange(&mut self, view: &View) {
+    pub fn arrange(&mut self, gpu: &Gpu, view: &View) {
         self.draws.arrange(view, &self.instances, &self.instance_bounds);
+        let indices: &[u8] = bytemuck::cast_slice(&self.draws.blend_order.indices);
+        if indices.len() as u64 > self.sorted.size() {
+            self.sorted = index_buffer(gpu, indices.len() as u64);
+        }
+        gpu.queue.write_buffer(&self.sorted, 0, indices);
     }
 
     /// The lights that `settings` choose, as indices into [`Self::lights`].
@@ -195,8 +204,19 @@ impl SceneOnGpu {
     }
 }
 
+fn index_buffer(gpu: &Gpu, size: u64) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("sorted triangles"),
+        size,
+        usage: wgpu::BufferUsages::INDEX | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
 /// The least roughness of a material's points.
 fn least_roughness(material: &Material) -> f64 {
-    // A texture may hold 0.
-    if material.metallic_roughness_texture.is_some() { 0.0 } else { f64::from(material.roughness) }
+    let roughness = material.specular_glossiness.map_or(material.roughness, |glossy| 1.0 - glossy.glossiness);
+    // A texture may hold 0, and what further layers reflect is less than a mirror does.
+    let unknown = material_slots(material)[1].is_some() || material.clearcoat.is_some() || material.sheen.is_some();
+    if unknown { 0.0 } else { f64::from(roughness) }
 }

@@ -17,6 +17,8 @@ pub struct Settings {
     pub lights: Option<Vec<usize>>,
     /// How radiance becomes brightness.
     pub exposure: Exposure,
+    /// How light ends on smooth surfaces.
+    pub terminator: Terminator,
 }
 
 impl Default for Settings {
@@ -28,6 +30,7 @@ impl Default for Settings {
             shadows: true,
             lights: None,
             exposure: Exposure::Auto,
+            terminator: Terminator::Soft,
         }
     }
 }
@@ -38,6 +41,18 @@ impl Settings {
         let measures = self.technique.measures();
         Measures { tiles: if measures.tiles == Tiles::Never { Tiles::Never } else { self.tiles }, ..measures }
     }
+}
+
+/// What becomes of light where a smooth surface turns away from it. Shadows are the same to the bit: they belong to the
+/// triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Terminator {
+    /// Light fades before the first triangle turns away, so that the border of its own shadow, which follows the edges of
+    /// triangles, is not seen. Flat-shaded and well-tessellated meshes look the same as with [`Terminator::Exact`].
+    #[default]
+    Soft,
+    /// Every lit point has all the light that its shading normal gives it.
+    Exact,
 }
 
 /// How scene radiance is scaled before tone mapping.

@@ -151,7 +151,23 @@ mod tests {
             shade,
             "Material",
             MaterialUniform,
-            [base_color, emissive, alpha_cutoff, metallic, roughness, normal_scale, occlusion_strength, slots]
+            [
+                base_color,
+                emissive,
+                alpha_cutoff,
+                metallic,
+                roughness,
+                normal_scale,
+                occlusion_strength,
+                specular,
+                specular_strength,
+                sheen,
+                sheen_roughness,
+                tint,
+                transmission,
+                clearcoat,
+                clearcoat_roughness
+            ]
         );
         assert_layout!(
             shade,

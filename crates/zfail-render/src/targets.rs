@@ -23,8 +23,9 @@ pub const ALBEDO: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// What [`DEPTH`] holds where there is no surface.
 pub const NO_SURFACE: f32 = f32::MAX;
 
-/// Bytes per sample: verdicts, radiance or picture, depth-stencil (padded).
-const BYTES_PER_SAMPLE: u64 = 4 + 8 + 8;
+/// Bytes per sample: verdicts, radiance or picture, depth-stencil (padded), and for blended surfaces verdicts and
+/// depth-stencil once more.
+const BYTES_PER_SAMPLE: u64 = 4 + 8 + 8 + 4 + 8;
 /// Bytes per pixel beside its samples: HDR, LDR, and the attributes' depth, normal, albedo and depth-stencil.
 const BYTES_PER_PIXEL: u64 = 8 + 4 + 4 + 4 + 4 + 8;
 /// All targets together may take this much.
@@ -43,6 +44,17 @@ pub struct Targets {
     pub ldr_view: wgpu::TextureView,
     hdr: Option<HdrTargets>,
     verdicts: Option<Verdicts>,
+    layer: Option<Layer>,
+}
+
+/// What frames with shadows on blended surfaces need.
+#[derive(Debug)]
+pub struct Layer {
+    /// Of the nearest surface, blended ones included.
+    pub depth_stencil: wgpu::TextureView,
+    /// Its depth, for reading; `None` where that is not possible.
+    pub depth: Option<wgpu::TextureView>,
+    pub verdicts: Verdicts,
 }
 
 /// What frames need that do not write the picture directly.
@@ -78,6 +90,7 @@ impl Targets {
             ldr,
             hdr: None,
             verdicts: None,
+            layer: None,
         })
     }
 
@@ -95,11 +108,27 @@ impl Targets {
 
     pub fn verdicts(&mut self, gpu: &Gpu, layouts: &Layouts) -> &Verdicts {
         let (size, samples) = (self.size, self.samples);
-        self.verdicts.get_or_insert_with(|| {
-            let view = view(&create(gpu, "verdicts", VERDICTS, size, samples));
-            let resources = [wgpu::BindingResource::TextureView(&view)];
-            Verdicts { bind_group: bind(&gpu.device, "verdicts", layouts.verdicts(samples), &resources), view }
+        self.verdicts.get_or_insert_with(|| Verdicts::new(gpu, layouts, size, samples))
+    }
+
+    pub fn layer(&mut self, gpu: &Gpu, layouts: &Layouts) -> &Layer {
+        let (size, samples) = (self.size, self.samples);
+        self.layer.get_or_insert_with(|| {
+            let depth_stencil = create(gpu, "nearest layer", gpu.depth_stencil, size, samples);
+            Layer {
+                depth: depth_view(gpu, &depth_stencil),
+                depth_stencil: view(&depth_stencil),
+                verdicts: Verdicts::new(gpu, layouts, size, samples),
+            }
         })
+    }
+}
+
+impl Verdicts {
+    fn new(gpu: &Gpu, layouts: &Layouts, size: [u32; 2], samples: u32) -> Self {
+        let view = view(&create(gpu, "verdicts", VERDICTS, size, samples));
+        let resources = [wgpu::BindingResource::TextureView(&view)];
+        Self { bind_group: bind(&gpu.device, "verdicts", layouts.verdicts(samples), &resources), view }
     }
 }
 

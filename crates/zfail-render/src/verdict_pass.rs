@@ -18,7 +18,7 @@ pub const LIGHTS: usize = 32;
 /// Of these, those that share a channel.
 const PER_CHANNEL: usize = 8;
 
-/// What a depth pipeline depends on: winding, two sides, and for masked surfaces whether they have a texture.
+/// What a depth pipeline depends on: winding, two sides, and for surfaces with alpha whether they have a texture.
 type Key = (bool, bool, Option<bool>);
 
 /// Pipelines of the pass for one sample count.
@@ -40,6 +40,8 @@ pub struct VerdictTargets<'a> {
     pub depth_stencil: &'a wgpu::TextureView,
     /// The device and the depth for reading, if lights are counted by tiles.
     pub tiles: Option<(&'a wgpu::Device, &'a wgpu::TextureView)>,
+    /// Verdicts are on what is nearest, blended surfaces included; otherwise on what is behind them.
+    pub layered: bool,
 }
 
 /// One light of the pass.
@@ -85,10 +87,10 @@ impl VerdictPass {
         Self { samples, bits, depth: HashMap::new(), volumes: shadows.pipelines(&gpu.device, &target), keep }
     }
 
-    /// Makes the pipelines that the scene's solid draws lack.
-    pub fn prepare(&mut self, gpu: &Gpu, layouts: &Layouts, scene: &SceneOnGpu) {
+    /// Makes the pipelines that the scene's draws lack, those of blended surfaces if `layered`.
+    pub fn prepare(&mut self, gpu: &Gpu, layouts: &Layouts, scene: &SceneOnGpu, layered: bool) {
         let (samples, bits) = (self.samples, self.bits);
-        for draw in &scene.draws.solid {
+        for draw in draws(scene, layered) {
             let key = key(scene.draws.parts[draw.part].look, draw);
             self.depth.entry(key).or_insert_with(|| create(gpu, layouts, samples, bits, key));
         }
@@ -105,7 +107,7 @@ impl VerdictPass {
         lights: impl Iterator<Item = Verdict>,
         timer: (&Timer, Option<usize>),
     ) {
-        let &VerdictTargets { verdicts, depth_stencil, tiles } = targets;
+        let &VerdictTargets { verdicts, depth_stencil, tiles, layered } = targets;
         let timestamps = timer.1.and_then(|span| timer.0.pass(span));
         let (begin, end) = (timestamps.clone(), timestamps.clone());
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -119,14 +121,14 @@ impl VerdictPass {
             ..Default::default()
         });
         pass.set_bind_group(0, &frame.bind_group, &[]);
-        for draw in &scene.draws.solid {
+        for draw in draws(scene, layered) {
             let part = &scene.draws.parts[draw.part];
             let (Some(mesh), Some(pipeline)) = (&scene.meshes[part.mesh], self.depth.get(&key(part.look, draw))) else {
                 continue;
             };
             pass.set_pipeline(pipeline);
             mesh.bind(&mut pass, vertices(part.look.alpha), &frame.instances);
-            if part.look.alpha == Alpha::Mask {
+            if part.look.alpha != Alpha::Opaque {
                 pass.set_bind_group(1, &scene.materials[part.material], &[]);
             }
             pass.draw_indexed(part.indices.clone(), 0, draw.slots.clone());
@@ -166,12 +168,16 @@ impl VerdictPass {
     }
 }
 
+fn draws(scene: &SceneOnGpu, layered: bool) -> impl Iterator<Item = &Draw> {
+    scene.draws.solid.iter().chain(scene.draws.blended.iter().filter(move |_| layered))
+}
+
 fn vertices(alpha: Alpha) -> Vertices {
-    if alpha == Alpha::Mask { Vertices::Textured } else { Vertices::Depth }
+    if alpha == Alpha::Opaque { Vertices::Depth } else { Vertices::Textured }
 }
 
 fn key(look: Look, draw: &Draw) -> Key {
-    (draw.mirrored, look.double_sided, (look.alpha == Alpha::Mask).then_some(look.textured[0]))
+    (draw.mirrored, look.double_sided, (look.alpha != Alpha::Opaque).then_some(look.textured[0]))
 }
 
 fn create(

@@ -15,4 +15,7 @@ pub mod write;
 
 pub use animate::{Animated, Animation};
 pub use complete::complete;
-pub use read::{FileInfo, Limits, LoadError, load, load_animated, load_with, load_with_info};
+pub use read::{
+    FileInfo, Limits, LoadError, Treatment, extension_treatment, load, load_animated, load_variant, load_with,
+    load_with_info,
+};

@@ -10,7 +10,7 @@ use serde::Serialize;
 use zfail_plan::scene::{AlphaMode, Bounds, Camera, Instance, Light, LightKind, Material};
 use zfail_plan::view::Projection;
 use zfail_scene::read::{ChannelInfo, FileInfo};
-use zfail_scene::{Animated, Animation};
+use zfail_scene::{Animated, Animation, Treatment, extension_treatment};
 
 /// A scene.
 #[derive(Serialize)]
@@ -128,7 +128,7 @@ impl Report {
         let channels = |animation: usize| file.as_ref().and_then(|file| file.channels.get(animation).copied());
         Ok(Self {
             scene: scene.name.clone(),
-            extensions: file.as_ref().map(|file| extensions(file, &scene.notices)).unwrap_or_default(),
+            extensions: file.as_ref().map(extensions).unwrap_or_default(),
             bounds: Some(scene.bounds()).filter(|b| !b.is_empty()).map(|Bounds { min, max }| [min.into(), max.into()]),
             triangles: scene.instances.iter().map(|i| scene.meshes[i.mesh].triangles.len()).sum(),
             meshes: meshes.collect::<Result<_, _>>()?,
@@ -152,23 +152,20 @@ impl Report {
     }
 }
 
-/// The extensions of a file. The loader has a notice for each that it does not read in full.
-fn extensions(file: &FileInfo, notices: &[String]) -> Vec<ExtensionReport> {
+/// The extensions of a file, and what becomes of them.
+fn extensions(file: &FileInfo) -> Vec<ExtensionReport> {
     let FileInfo { extensions_used: used, extensions_required: required, .. } = file;
     let mut names: Vec<&String> = used.iter().chain(required).collect();
     names.sort();
     names.dedup();
-    let treatment = |name: &str| {
-        let about = notices.iter().find(|notice| notice.contains(name));
-        about.map_or_else(
-            || "read".to_owned(),
-            |notice| notice.replacen(name, "", 1).trim_matches([' ', ':']).to_owned(),
-        )
-    };
     let report = |name: &String| ExtensionReport {
         name: name.clone(),
         required: required.contains(name),
-        treatment: treatment(name),
+        treatment: match extension_treatment(name) {
+            Treatment::Read => "read".to_owned(),
+            Treatment::Approximated(how) => format!("approximated: {how}"),
+            Treatment::Ignored(consequence) => format!("ignored: {consequence}"),
+        },
     };
     names.into_iter().map(report).collect()
 }

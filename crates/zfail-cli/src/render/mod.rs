@@ -67,6 +67,7 @@ fn settings(args: &args::Render, lights: &[usize]) -> Settings {
         shadows: !args.no_shadows,
         lights: Some(lights.to_vec()),
         exposure: args.exposure,
+        terminator: args.terminator,
         ..Settings::default()
     }
 }

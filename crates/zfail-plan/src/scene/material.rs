@@ -33,6 +33,97 @@ pub struct Material {
     pub double_sided: bool,
     /// Base colour is shown as it is, without any light.
     pub unlit: bool,
+    /// Replaces metalness, roughness and their texture where it is given (KHR_materials_pbrSpecularGlossiness).
+    pub specular_glossiness: Option<SpecularGlossiness>,
+    /// Mirror reflection of dielectrics.
+    pub specular: Specular,
+    /// A layer of varnish.
+    pub clearcoat: Option<Clearcoat>,
+    /// Fibres.
+    pub sheen: Option<Sheen>,
+    /// Light passes, whatever `alpha` says.
+    pub transmission: Option<Transmission>,
+}
+
+/// What is reflected and how smoothly, as a colour (KHR_materials_pbrSpecularGlossiness). The base colour is the diffuse one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpecularGlossiness {
+    /// Reflectance at normal incidence, linear RGB.
+    pub color: [f32; 3],
+    /// 1 less the perceptual roughness.
+    pub glossiness: f32,
+    /// sRGB-encoded colour, glossiness in A.
+    pub texture: Option<TextureRef>,
+}
+
+/// Mirror reflection of dielectrics (KHR_materials_ior, KHR_materials_specular).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Specular {
+    /// Index of refraction, 1 or more; 0 reflects everything.
+    pub ior: f32,
+    /// Share of the reflection, 0 to 1.
+    pub strength: f32,
+    /// Linear RGB, of the reflection at normal incidence.
+    pub color: [f32; 3],
+    /// sRGB-encoded, multiplies the colour.
+    pub color_texture: Option<TextureRef>,
+}
+
+impl Default for Specular {
+    fn default() -> Self {
+        Self { ior: 1.5, strength: 1.0, color: [1.0; 3], color_texture: None }
+    }
+}
+
+impl Specular {
+    /// Reflectance at normal incidence, linear RGB, its strength and texture left out.
+    #[must_use]
+    pub fn normal_reflectance(&self) -> [f32; 3] {
+        let f0 = if self.ior == 0.0 { 1.0 } else { ((self.ior - 1.0) / (self.ior + 1.0)).powi(2) };
+        self.color.map(|c| (c * f0).min(1.0))
+    }
+}
+
+/// A smooth, colourless layer over everything (KHR_materials_clearcoat).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clearcoat {
+    /// 0 none, 1 full.
+    pub strength: f32,
+    /// Strength in R, linear.
+    pub texture: Option<TextureRef>,
+    /// Perceptual, 0 to 1.
+    pub roughness: f32,
+}
+
+/// Light scattered by fibres on the surface (KHR_materials_sheen).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sheen {
+    /// Linear RGB.
+    pub color: [f32; 3],
+    /// sRGB-encoded, multiplies the colour.
+    pub texture: Option<TextureRef>,
+    /// Perceptual, 0 to 1.
+    pub roughness: f32,
+}
+
+/// Light that passes instead of being scattered (KHR_materials_transmission, KHR_materials_volume).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transmission {
+    /// Share of the light that is not reflected, 0 to 1.
+    pub share: f32,
+    /// Share in R, linear.
+    pub texture: Option<TextureRef>,
+    /// What the body behind the surface leaves of the light, linear RGB.
+    pub tint: [f32; 3],
+}
+
+impl Material {
+    /// Whether what is behind it is seen through it: it is drawn in the final pass, and casts no shadow unless
+    /// [`super::Scene::blended_casts`].
+    #[must_use]
+    pub fn is_blended(&self) -> bool {
+        self.alpha == AlphaMode::Blend || self.transmission.is_some()
+    }
 }
 
 impl Default for Material {
@@ -53,6 +144,11 @@ impl Default for Material {
             alpha: AlphaMode::Opaque,
             double_sided: false,
             unlit: false,
+            specular_glossiness: None,
+            specular: Specular::default(),
+            clearcoat: None,
+            sheen: None,
+            transmission: None,
         }
     }
 }
@@ -64,7 +160,7 @@ pub enum AlphaMode {
     Opaque,
     /// A point is there where alpha is at least the cutoff.
     Mask(f32),
-    /// Drawn in the final pass over the opaque image; casts no shadow.
+    /// Drawn in the final pass over the opaque image; casts no shadow unless [`super::Scene::blended_casts`].
     Blend,
 }
 

@@ -10,7 +10,10 @@ mod pose;
 
 pub use bounds::Bounds;
 pub use light::{Light, LightKind, LightShape};
-pub use material::{AlphaMode, Filter, Image, MaskCasting, Material, Texture, TextureRef, Wrap};
+pub use material::{
+    AlphaMode, Clearcoat, Filter, Image, MaskCasting, Material, Sheen, Specular, SpecularGlossiness, Texture,
+    TextureRef, Transmission, Wrap,
+};
 pub use mesh::{Mesh, Primitive};
 pub use pose::{BentMesh, Pose};
 
@@ -43,6 +46,8 @@ pub struct Scene {
     pub ambient: [f32; 3],
     /// Radiance of pixels that see no surface, linear RGB.
     pub background: [f32; 3],
+    /// Whether blended and transmissive surfaces cast shadows, as solid ones do.
+    pub blended_casts: bool,
     /// What the loader repaired, replaced or left out, for the user to read.
     pub notices: Vec<String>,
 }
@@ -87,8 +92,8 @@ impl Scene {
         bounds
     }
 
-    /// Whether triangle `triangle` of mesh `mesh` blocks light at all: blended materials let it through, and masked ones
-    /// where [`Scene::mask_casting`] says so.
+    /// Whether triangle `triangle` of mesh `mesh` blocks light at all: blended materials let it through unless
+    /// [`Scene::blended_casts`], and masked ones where [`Scene::mask_casting`] says so.
     #[must_use]
     pub fn triangle_casts(&self, mesh: usize, triangle: usize) -> bool {
         self.triangle_surface(mesh, triangle) != Surface::Through
@@ -101,11 +106,13 @@ impl Scene {
             return Surface::Front;
         };
         match material.alpha {
-            AlphaMode::Blend => Surface::Through,
+            // No depth pass draws it.
+            _ if material.is_blended() && self.blended_casts => Surface::Partly,
+            _ if material.is_blended() => Surface::Through,
             AlphaMode::Mask(_) if self.mask_casting == MaskCasting::Off => Surface::Through,
             AlphaMode::Mask(_) => Surface::Partly,
-            AlphaMode::Opaque if material.double_sided => Surface::BothSides,
-            AlphaMode::Opaque => Surface::Front,
+            _ if material.double_sided => Surface::BothSides,
+            _ => Surface::Front,
         }
     }
 }

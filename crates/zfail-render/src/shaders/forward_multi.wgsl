@@ -9,3 +9,8 @@ fn forward(
     let shadowed = textureLoad(verdicts, vec2<i32>(in.clip.xy), i32(sample_index));
     return shade(in, front, pack4x8unorm(shadowed));
 }
+
+@fragment
+fn filtered(in: Fragment, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    return transmittance(in, front);
+}

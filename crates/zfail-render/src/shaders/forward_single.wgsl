@@ -7,3 +7,8 @@ fn forward(in: Fragment, @builtin(front_facing) front: bool) -> @location(0) vec
     let shadowed = textureLoad(verdicts, vec2<i32>(in.clip.xy), 0);
     return shade(in, front, pack4x8unorm(shadowed));
 }
+
+@fragment
+fn filtered(in: Fragment, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    return transmittance(in, front);
+}

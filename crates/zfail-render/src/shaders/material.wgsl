@@ -14,11 +14,24 @@ struct Material {
     roughness: f32,
     normal_scale: f32,
     occlusion_strength: f32,
+    // Reflectance at normal incidence: of the dielectric, or of everything (SPECULAR_GLOSSINESS).
+    specular: vec3<f32>,
+    specular_strength: f32,
+    sheen: vec3<f32>,
+    sheen_roughness: f32,
+    tint: vec3<f32>,
+    transmission: f32,
+    clearcoat: f32,
+    clearcoat_roughness: f32,
     base_color_slot: Slot,
     metallic_roughness_slot: Slot,
     normal_slot: Slot,
     occlusion_slot: Slot,
     emissive_slot: Slot,
+    specular_color_slot: Slot,
+    clearcoat_slot: Slot,
+    sheen_slot: Slot,
+    transmission_slot: Slot,
 }
 
 @group(1) @binding(0) var<uniform> material: Material;
@@ -32,16 +45,36 @@ struct Material {
 @group(1) @binding(8) var occlusion_sampler: sampler;
 @group(1) @binding(9) var emissive_texture: texture_2d<f32>;
 @group(1) @binding(10) var emissive_sampler: sampler;
+@group(1) @binding(11) var specular_color_texture: texture_2d<f32>;
+@group(1) @binding(12) var specular_color_sampler: sampler;
+@group(1) @binding(13) var clearcoat_texture: texture_2d<f32>;
+@group(1) @binding(14) var clearcoat_sampler: sampler;
+@group(1) @binding(15) var sheen_texture: texture_2d<f32>;
+@group(1) @binding(16) var sheen_sampler: sampler;
+@group(1) @binding(17) var transmission_texture: texture_2d<f32>;
+@group(1) @binding(18) var transmission_sampler: sampler;
 
 struct Surface {
     albedo: vec3<f32>,
     alpha: f32,
-    metallic: f32,
+    // What is scattered below the surface.
+    diffuse: vec3<f32>,
+    // Reflectance at normal incidence and at grazing angles.
+    f0: vec3<f32>,
+    f90: f32,
     roughness: f32,
+    clearcoat: f32,
+    sheen: vec3<f32>,
+    // Share that passes of what would be scattered.
+    transmission: f32,
     occlusion: f32,
     emissive: vec3<f32>,
     // View space, unit: for shading, on the side of the eye for double-sided materials.
     normal: vec3<f32>,
+    // View space, unit: the normal without its texture.
+    smooth_normal: vec3<f32>,
+    // Sine of the greatest angle between that normal and the facets around it.
+    tilt: f32,
     // View space, of any length: the triangle's own, on the side of the eye.
     geometric_normal: vec3<f32>,
     // View space: from pixel to pixel.
@@ -69,6 +102,17 @@ override METALLIC_ROUGHNESS: bool = false;
 override NORMAL: bool = false;
 override OCCLUSION: bool = false;
 override EMISSIVE: bool = false;
+override SPECULAR_COLOR: bool = false;
+override CLEARCOAT_TEXTURE: bool = false;
+override SHEEN_TEXTURE: bool = false;
+override TRANSMISSION_TEXTURE: bool = false;
+// What there is beyond metallic-roughness, as the KHR_materials extensions have it. The first replaces it: the texture is
+// then one of specular colour and glossiness.
+override SPECULAR_GLOSSINESS: bool = false;
+override SPECULAR: bool = false;
+override CLEARCOAT: bool = false;
+override SHEEN: bool = false;
+override TRANSMISSION: bool = false;
 
 fn surface(in: Fragment, front: bool, eye: vec3<f32>) -> Surface {
     let uv = vertex_uv(in);
@@ -76,10 +120,28 @@ fn surface(in: Fragment, front: bool, eye: vec3<f32>) -> Surface {
     if BASE_COLOR {
         base_color *= textureSample(base_color_texture, base_color_sampler, slot_uv(material.base_color_slot, uv));
     }
-    var metallic_roughness = vec2<f32>(material.metallic, material.roughness);
+    var texel = vec4<f32>(1.0);
     if METALLIC_ROUGHNESS {
         let at = slot_uv(material.metallic_roughness_slot, uv);
-        metallic_roughness *= textureSample(metallic_roughness_texture, metallic_roughness_sampler, at).bg;
+        texel = textureSample(metallic_roughness_texture, metallic_roughness_sampler, at);
+    }
+    var specular = material.specular;
+    if SPECULAR_COLOR {
+        let at = slot_uv(material.specular_color_slot, uv);
+        specular *= textureSample(specular_color_texture, specular_color_sampler, at).rgb;
+    }
+    var clearcoat = material.clearcoat;
+    if CLEARCOAT_TEXTURE {
+        clearcoat *= textureSample(clearcoat_texture, clearcoat_sampler, slot_uv(material.clearcoat_slot, uv)).r;
+    }
+    var sheen = material.sheen;
+    if SHEEN_TEXTURE {
+        sheen *= textureSample(sheen_texture, sheen_sampler, slot_uv(material.sheen_slot, uv)).rgb;
+    }
+    var transmission = material.transmission;
+    if TRANSMISSION_TEXTURE {
+        let at = slot_uv(material.transmission_slot, uv);
+        transmission *= textureSample(transmission_texture, transmission_sampler, at).r;
     }
     let normal_uv = slot_uv(material.normal_slot, uv);
     var normal_texel = vec3<f32>(0.0, 0.0, 1.0);
@@ -89,8 +151,8 @@ fn surface(in: Fragment, front: bool, eye: vec3<f32>) -> Surface {
     var occlusion = 1.0;
     if OCCLUSION {
         let at = slot_uv(material.occlusion_slot, uv);
-        let texel = textureSample(occlusion_texture, occlusion_sampler, at).r;
-        occlusion += material.occlusion_strength * (texel - 1.0);
+        let open = textureSample(occlusion_texture, occlusion_sampler, at).r;
+        occlusion += material.occlusion_strength * (open - 1.0);
     }
     var emissive = material.emissive;
     if EMISSIVE {
@@ -106,8 +168,32 @@ fn surface(in: Fragment, front: bool, eye: vec3<f32>) -> Surface {
     var out: Surface;
     out.albedo = base_color.rgb;
     out.alpha = base_color.a;
-    out.metallic = clamp(metallic_roughness.x, 0.0, 1.0);
-    out.roughness = clamp(metallic_roughness.y, 0.0, 1.0);
+    if SPECULAR_GLOSSINESS {
+        out.f0 = specular * texel.rgb;
+        out.f90 = 1.0;
+        out.diffuse = base_color.rgb * (1.0 - max(out.f0.r, max(out.f0.g, out.f0.b)));
+        out.albedo = out.diffuse + out.f0;
+        out.roughness = clamp(1.0 - (1.0 - material.roughness) * texel.a, 0.0, 1.0);
+    } else {
+        let metallic = clamp(material.metallic * texel.b, 0.0, 1.0);
+        var dielectric = vec3<f32>(0.04);
+        out.f90 = 1.0;
+        if SPECULAR {
+            dielectric = min(specular, vec3<f32>(1.0)) * material.specular_strength;
+            out.f90 = mix(material.specular_strength, 1.0, metallic);
+        }
+        out.f0 = mix(dielectric, base_color.rgb, metallic);
+        out.diffuse = base_color.rgb * (1.0 - metallic);
+        out.roughness = clamp(material.roughness * texel.g, 0.0, 1.0);
+        transmission *= 1.0 - metallic;
+    }
+    out.clearcoat = clearcoat;
+    out.sheen = sheen;
+    out.transmission = 0.0;
+    if TRANSMISSION {
+        out.transmission = transmission;
+        out.diffuse *= 1.0 - transmission;
+    }
     out.occlusion = occlusion;
     out.emissive = emissive * frame.pre_exposure;
     out.position_dx = position_dx;
@@ -118,6 +204,8 @@ fn surface(in: Fragment, front: bool, eye: vec3<f32>) -> Surface {
     let outward = side * out.geometric_normal;
     // Meshes without normals are flat.
     var normal = unit_or(select(in.normal, outward, dot(in.normal, in.normal) == 0.0), eye);
+    out.smooth_normal = side * normal;
+    out.tilt = in.tilt * inverseSqrt(max(dot(in.normal, in.normal), 1e-30));
     if NORMAL {
         var tangent = vertex_tangent(in);
         var bitangent = vertex_bitangent(in);

@@ -47,6 +47,32 @@ fn illumination(in: Fragment, s: Surface, eye: vec3<f32>, shadowed: u32) -> vec3
     return sum;
 }
 
+// How much of the ambient light is sent back.
+fn ambient_reflectance(s: Surface, eye: vec3<f32>) -> vec3<f32> {
+    if TRANSMISSION {
+        return s.albedo * (1.0 - s.transmission) + surface_fresnel(s, eye);
+    }
+    return s.albedo;
+}
+
+// What a perfectly smooth surface would mirror.
+fn surface_fresnel(s: Surface, eye: vec3<f32>) -> vec3<f32> {
+    return s.f0 + (s.f90 - s.f0) * grazing(dot(s.normal, eye));
+}
+
+// How much of a transmissive surface is there: its alpha counts only where the material says so.
+fn coverage(s: Surface) -> f32 {
+    return select(s.alpha, 1.0, material.alpha_cutoff < 0.0);
+}
+
+// What is left of the light behind a transmissive surface.
+fn transmittance(in: Fragment, front: bool) -> vec4<f32> {
+    let eye = towards_eye(in.position);
+    let s = surface(in, front, eye);
+    let passing = (1.0 - surface_fresnel(s, eye)) * s.transmission * s.albedo * material.tint;
+    return vec4<f32>(mix(vec3<f32>(1.0), passing, coverage(s)), 1.0);
+}
+
 // `shadowed` has a bit for each of the first 32 lights.
 fn shade(in: Fragment, front: bool, shadowed: u32) -> vec4<f32> {
     let eye = towards_eye(in.position);
@@ -58,7 +84,7 @@ fn shade(in: Fragment, front: bool, shadowed: u32) -> vec4<f32> {
     if !UNLIT {
         color = illumination(in, s, eye, shadowed);
         if !ADDED {
-            color += frame.ambient * s.occlusion * s.albedo + s.emissive;
+            color += frame.ambient * s.occlusion * ambient_reflectance(s, eye) + s.emissive;
         }
         color = min(color, vec3<f32>(BRIGHTEST));
     } else if ADDED {
@@ -69,6 +95,10 @@ fn shade(in: Fragment, front: bool, shadowed: u32) -> vec4<f32> {
             color = tone_map(color * frame.exposure);
         }
         return vec4<f32>(srgb_encode(color), 1.0);
+    }
+    if TRANSMISSION {
+        // Nothing is covered: what passes has been filtered.
+        return vec4<f32>(color * coverage(s), 0.0);
     }
     if BLEND {
         return vec4<f32>(color * s.alpha, s.alpha);

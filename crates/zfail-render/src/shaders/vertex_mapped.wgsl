@@ -2,7 +2,8 @@
 
 struct Vertex {
     @location(0) position: vec3<f32>,
-    @location(1) normal: vec3<f32>,
+    // The tilt (terminator.rs) in w.
+    @location(1) normal: vec4<f32>,
     @location(2) tangent: vec4<f32>,
     @location(3) uv: vec4<f32>,
     @location(4) color: vec4<f32>,
@@ -30,6 +31,8 @@ struct Fragment {
     @location(4) @interpolate(perspective, centroid) color: vec4<f32>,
     @location(5) @interpolate(perspective, centroid) tangent: vec3<f32>,
     @location(6) @interpolate(perspective, centroid) bitangent: vec3<f32>,
+    // As long as the normal.
+    @location(7) @interpolate(perspective, centroid) tilt: f32,
 }
 
 @vertex
@@ -38,13 +41,14 @@ fn place(vertex: Vertex) -> Fragment {
     var out: Fragment;
     out.clip = mat4x4<f32>(vertex.clip_x, vertex.clip_y, vertex.clip_z, vertex.clip_w) * p;
     out.position = vec3<f32>(dot(vertex.view_x, p), dot(vertex.view_y, p), dot(vertex.view_z, p));
-    out.normal = mat3x3<f32>(vertex.normal_x, vertex.normal_y, vertex.normal_z) * vertex.normal;
+    out.normal = mat3x3<f32>(vertex.normal_x, vertex.normal_y, vertex.normal_z) * vertex.normal.xyz;
+    out.tilt = vertex.normal.w * length(out.normal);
     out.lights = vertex.lights;
     out.uv = vertex.uv;
     out.color = vertex.color;
     let tangent = vertex.tangent.xyz;
     out.tangent = vec3<f32>(dot(vertex.view_x.xyz, tangent), dot(vertex.view_y.xyz, tangent), dot(vertex.view_z.xyz, tangent));
-    let bitangent = cross(vertex.normal, tangent) * vertex.tangent.w;
+    let bitangent = cross(vertex.normal.xyz, tangent) * vertex.tangent.w;
     out.bitangent =
         vec3<f32>(dot(vertex.view_x.xyz, bitangent), dot(vertex.view_y.xyz, bitangent), dot(vertex.view_z.xyz, bitangent));
     return out;

@@ -2,7 +2,8 @@
 
 struct Vertex {
     @location(0) position: vec3<f32>,
-    @location(1) normal: vec3<f32>,
+    // The tilt (terminator.rs) in w.
+    @location(1) normal: vec4<f32>,
     @location(5) clip_x: vec4<f32>,
     @location(6) clip_y: vec4<f32>,
     @location(7) clip_z: vec4<f32>,
@@ -23,6 +24,8 @@ struct Fragment {
     @location(0) position: vec3<f32>,
     @location(1) @interpolate(perspective, centroid) normal: vec3<f32>,
     @location(2) @interpolate(flat) lights: vec2<u32>,
+    // As long as the normal.
+    @location(3) @interpolate(perspective, centroid) tilt: f32,
 }
 
 @vertex
@@ -31,7 +34,8 @@ fn place(vertex: Vertex) -> Fragment {
     var out: Fragment;
     out.clip = mat4x4<f32>(vertex.clip_x, vertex.clip_y, vertex.clip_z, vertex.clip_w) * p;
     out.position = vec3<f32>(dot(vertex.view_x, p), dot(vertex.view_y, p), dot(vertex.view_z, p));
-    out.normal = mat3x3<f32>(vertex.normal_x, vertex.normal_y, vertex.normal_z) * vertex.normal;
+    out.normal = mat3x3<f32>(vertex.normal_x, vertex.normal_y, vertex.normal_z) * vertex.normal.xyz;
+    out.tilt = vertex.normal.w * length(out.normal);
     out.lights = vertex.lights;
     return out;
 }

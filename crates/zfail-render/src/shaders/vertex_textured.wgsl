@@ -2,7 +2,8 @@
 
 struct Vertex {
     @location(0) position: vec3<f32>,
-    @location(1) normal: vec3<f32>,
+    // The tilt (terminator.rs) in w.
+    @location(1) normal: vec4<f32>,
     @location(3) uv: vec4<f32>,
     @location(4) color: vec4<f32>,
     @location(5) clip_x: vec4<f32>,
@@ -27,6 +28,8 @@ struct Fragment {
     @location(2) @interpolate(flat) lights: vec2<u32>,
     @location(3) @interpolate(perspective, centroid) uv: vec4<f32>,
     @location(4) @interpolate(perspective, centroid) color: vec4<f32>,
+    // As long as the normal.
+    @location(5) @interpolate(perspective, centroid) tilt: f32,
 }
 
 @vertex
@@ -35,7 +38,8 @@ fn place(vertex: Vertex) -> Fragment {
     var out: Fragment;
     out.clip = mat4x4<f32>(vertex.clip_x, vertex.clip_y, vertex.clip_z, vertex.clip_w) * p;
     out.position = vec3<f32>(dot(vertex.view_x, p), dot(vertex.view_y, p), dot(vertex.view_z, p));
-    out.normal = mat3x3<f32>(vertex.normal_x, vertex.normal_y, vertex.normal_z) * vertex.normal;
+    out.normal = mat3x3<f32>(vertex.normal_x, vertex.normal_y, vertex.normal_z) * vertex.normal.xyz;
+    out.tilt = vertex.normal.w * length(out.normal);
     out.lights = vertex.lights;
     out.uv = vertex.uv;
     out.color = vertex.color;

@@ -53,6 +53,14 @@ pub enum Fault {
         /// What went wrong.
         problem: String,
     },
+    /// The file has no variant of its materials as asked for.
+    #[error("there is no variant '{wanted}'; there are: {there_are}")]
+    Variant {
+        /// Name or number.
+        wanted: String,
+        /// The names.
+        there_are: String,
+    },
     /// Loading would need more memory than [`super::Limits`] allows.
     #[error("{element}: needs more than the limit of {limit}; simplify the scene, or raise the limit")]
     TooLarge {

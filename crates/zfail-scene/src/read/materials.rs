@@ -1,7 +1,10 @@
-//! Materials and textures, reduced to metallic-roughness.
+//! Materials and textures, and what becomes of the extensions that refine them ([`super::extension_treatment`]).
 
 use super::schema::{self, AlphaMode as Mode, Root, TextureInfo};
-use zfail_plan::scene::{AlphaMode, Filter, Material, Texture, TextureRef, Wrap};
+use zfail_plan::scene::{
+    AlphaMode, Clearcoat, Filter, Material, Scene, Sheen, Specular, SpecularGlossiness, Texture, TextureRef,
+    Transmission, Wrap,
+};
 
 /// The document's textures as the scene holds them. `images` are the scene's, by the document's index, without those
 /// that could not be decoded. Returns the scene's textures, and the index of each of the document's among them.
@@ -55,20 +58,25 @@ fn sampled(image: usize, sampler: &schema::Sampler) -> Texture {
     }
 }
 
-/// The document's materials; `textures` are the scene's by the document's index.
-pub(super) fn materials(root: &Root, textures: &[Option<usize>], notices: &mut Vec<String>) -> Vec<Material> {
-    root.materials
+/// The document's materials; `textures` are those of `scene` by the document's index. Notices go to `scene`.
+pub(super) fn materials(root: &Root, textures: &[Option<usize>], scene: &mut Scene) -> Vec<Material> {
+    let mut notices = std::mem::take(&mut scene.notices);
+    let materials = root
+        .materials
         .iter()
         .enumerate()
         .map(|(i, source)| {
             let name = source.name.clone().unwrap_or_else(|| format!("material {i}"));
-            Converter { name: &name, textures, notices }.convert(source)
+            Converter { name: &name, scene, textures, notices: &mut notices }.convert(source)
         })
-        .collect()
+        .collect();
+    scene.notices = notices;
+    materials
 }
 
 struct Converter<'a> {
     name: &'a str,
+    scene: &'a Scene,
     textures: &'a [Option<usize>],
     notices: &'a mut Vec<String>,
 }
@@ -97,35 +105,85 @@ impl Converter<'_> {
             },
             double_sided: source.double_sided,
             unlit: source.extensions.unlit.is_some(),
+            specular_glossiness: None,
+            specular: self.specular(&source.extensions),
+            clearcoat: source.extensions.clearcoat.as_deref().and_then(|c| self.clearcoat(c)),
+            sheen: source.extensions.sheen.as_deref().and_then(|s| self.sheen(s)),
+            transmission: self.transmission(&source.extensions),
         };
-        if let Some(source) = &source.extensions.specular_glossiness {
-            self.specular_glossiness(source, &mut material);
+        if let Some(glossy) = &source.extensions.specular_glossiness {
+            material.base_color = glossy.diffuse_factor.map(unit);
+            material.base_color_texture = self.texture(glossy.diffuse_texture.as_ref());
+            material.metallic_roughness_texture = None;
+            material.specular_glossiness = Some(SpecularGlossiness {
+                color: glossy.specular_factor.map(unit),
+                glossiness: unit(glossy.glossiness_factor),
+                texture: self.texture(glossy.specular_glossiness_texture.as_ref()),
+            });
         }
-        self.transmission(&source.extensions.transmission, &mut material);
         material
     }
 
-    /// The diffuse colour is what shows under any light; the specular colour has no place in this model.
-    fn specular_glossiness(&mut self, source: &schema::SpecularGlossiness, material: &mut Material) {
-        material.base_color = source.diffuse_factor.map(unit);
-        material.base_color_texture = self.texture(source.diffuse_texture.as_ref());
-        material.metallic = 0.0;
-        material.metallic_roughness_texture = None;
-        material.roughness = 1.0 - unit(source.glossiness_factor);
-        self.note("specular-glossiness is approximated: the specular colour is left out");
+    fn specular(&mut self, extensions: &schema::MaterialExtensions) -> Specular {
+        let ior = extensions.ior.ior;
+        // The specification: 0, or 1 and more.
+        let ior = if ior == 0.0 { 0.0 } else { bounded(ior).max(1.0) };
+        let Some(source) = &extensions.specular else { return Specular { ior, ..Specular::default() } };
+        if source.specular_texture.is_some() {
+            self.note("the texture of the specular strength is left out");
+        }
+        Specular {
+            ior,
+            strength: unit(source.specular_factor),
+            color: source.specular_color_factor.map(|c| bounded(c).max(0.0)),
+            color_texture: self.texture(source.specular_color_texture.as_ref()),
+        }
     }
 
-    /// Light passes, so the surface must not cast: blending is the nearest that a renderer without refraction has.
-    /// A texture limits transmission to parts of the surface, which blending cannot; such a surface stays as it is.
-    fn transmission(&mut self, source: &schema::Transmission, material: &mut Material) {
-        let factor = unit(source.transmission_factor);
-        if source.transmission_texture.is_some() && factor > 0.0 {
-            self.note("textured transmission is ignored: the surface is shown opaque");
-        } else if factor > 0.5 && material.alpha == AlphaMode::Opaque {
-            material.alpha = AlphaMode::Blend;
-            material.base_color[3] = 1.0 - 0.75 * factor;
-            self.note("transmission is approximated by blending; the surface casts no shadow");
+    fn clearcoat(&mut self, source: &schema::Clearcoat) -> Option<Clearcoat> {
+        let strength = unit(source.clearcoat_factor);
+        if strength == 0.0 {
+            return None;
         }
+        if source.clearcoat_roughness_texture.is_some() || source.clearcoat_normal_texture.is_some() {
+            self.note("textures of the clearcoat's roughness and normals are left out");
+        }
+        let texture = self.texture(source.clearcoat_texture.as_ref());
+        Some(Clearcoat { strength, texture, roughness: unit(source.clearcoat_roughness_factor) })
+    }
+
+    fn sheen(&mut self, source: &schema::Sheen) -> Option<Sheen> {
+        let color = source.sheen_color_factor.map(unit);
+        if color == [0.0; 3] {
+            return None;
+        }
+        if source.sheen_roughness_texture.is_some() {
+            self.note("the texture of the sheen's roughness is left out");
+        }
+        let texture = self.texture(source.sheen_color_texture.as_ref());
+        Some(Sheen { color, texture, roughness: unit(source.sheen_roughness_factor) })
+    }
+
+    /// What lets most of the light through does not cast. A texture may confine that to a part of the surface: it is taken
+    /// for transmissive if it is on average, and for opaque otherwise, since whole triangles cast or do not.
+    fn transmission(&mut self, extensions: &schema::MaterialExtensions) -> Option<Transmission> {
+        let source = extensions.transmission.as_deref()?;
+        let share = unit(source.transmission_factor);
+        let texture = self.texture(source.transmission_texture.as_ref());
+        let mean = share * texture.map_or(1.0, |texture| self.mean_red(texture));
+        if mean < 0.5 {
+            if share > 0.0 {
+                self.note("little light passes on average; the surface is shown opaque");
+            }
+            return None;
+        }
+        Some(Transmission { share, texture, tint: tint(&extensions.volume) })
+    }
+
+    fn mean_red(&self, texture: TextureRef) -> f32 {
+        let rgba = &self.scene.images[self.scene.textures[texture.texture].image].rgba;
+        let sum: u64 = rgba.chunks_exact(4).map(|texel| u64::from(texel[0])).sum();
+        sum as f32 / (255 * (rgba.len() / 4).max(1)) as f32
     }
 
     fn texture(&mut self, info: Option<&TextureInfo>) -> Option<TextureRef> {
@@ -149,6 +207,15 @@ impl Converter<'_> {
     }
 }
 
+/// What a body of the given thickness leaves of the light (KHR_materials_volume, Beer's law).
+fn tint(volume: &schema::Volume) -> [f32; 3] {
+    let (Some(color), Some(distance)) = (volume.attenuation_color, volume.attenuation_distance) else {
+        return [1.0; 3];
+    };
+    let depth = (volume.thickness_factor.max(0.0) / distance.max(1e-30)).min(1e30);
+    color.map(|c| unit(c.clamp(0.0, 1.0).powf(depth)))
+}
+
 /// Scale, then rotation from u towards -v (counter-clockwise in an image, whose v points down), then offset.
 fn uv_from_mesh(t: &schema::TextureTransform) -> [[f32; 3]; 2] {
     let (sin, cos) = t.rotation.sin_cos();
@@ -163,18 +230,22 @@ fn unit(x: f64) -> f32 {
 }
 
 fn bounded(x: f64) -> f32 {
-    x.clamp(-1e30, 1e30) as f32
+    // No negative zero.
+    x.clamp(-1e30, 1e30) as f32 + 0.0
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use zfail_plan::scene::Image;
 
     fn convert(json: &str) -> (Material, Vec<String>) {
         let root: Root = serde_json::from_str(&format!(r#"{{"materials": [{json}]}}"#)).unwrap();
-        let mut notices = Vec::new();
-        let material = materials(&root, &[Some(0), None, Some(1)], &mut notices).remove(0);
-        (material, notices)
+        let image = Image { name: String::new(), width: 2, height: 1, rgba: vec![51; 8] };
+        let texture = sampled(0, &schema::Sampler::default());
+        let mut scene = Scene { images: vec![image], textures: vec![texture; 2], ..Scene::default() };
+        let material = materials(&root, &[Some(0), None, Some(1)], &mut scene).remove(0);
+        (material, scene.notices)
     }
 
     #[test]
@@ -197,14 +268,46 @@ mod tests {
     }
 
     #[test]
-    fn approximations_are_noted() {
-        let (glass, notices) = convert(r#"{"extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}}}"#);
-        assert_eq!((glass.alpha, glass.base_color[3], notices.len()), (AlphaMode::Blend, 0.25, 1));
-        let (shiny, notices) = convert(
-            r#"{"extensions": {"KHR_materials_pbrSpecularGlossiness":
-                {"diffuseFactor": [0.5, 0.5, 0.5, 1], "glossinessFactor": 0.75}}}"#,
+    fn transmissive_surfaces_are_blended_if_most_light_passes() {
+        let glass = |properties: &str| {
+            convert(&format!(
+                r#"{{"extensions": {{"KHR_materials_transmission": {{{properties}}}, "KHR_materials_volume":
+                    {{"thicknessFactor": 2, "attenuationDistance": 1, "attenuationColor": [1, 0.5, 0]}}}}}}"#
+            ))
+        };
+        let (clear, notices) = glass(r#""transmissionFactor": 1"#);
+        assert!(clear.is_blended() && clear.alpha == AlphaMode::Opaque && notices.is_empty());
+        assert_eq!(clear.transmission.map(|t| (t.share, t.tint)), Some((1.0, [1.0, 0.25, 0.0])));
+        // The texture's red is 51 of 255 on average.
+        for properties in
+            [r#""transmissionFactor": 0.4"#, r#""transmissionFactor": 1, "transmissionTexture": {"index": 0}"#]
+        {
+            let (dull, notices) = glass(properties);
+            assert!(!dull.is_blended() && notices.len() == 1, "{properties}: {notices:?}");
+        }
+        assert!(!glass("").0.is_blended());
+    }
+
+    #[test]
+    fn layers_and_reflections() {
+        let (m, notices) = convert(
+            r#"{"extensions": {
+                "KHR_materials_pbrSpecularGlossiness": {"diffuseFactor": [0.5, 0.5, 0.5, 1], "glossinessFactor": 0.75,
+                    "specularFactor": [1, 0.5, 0], "specularGlossinessTexture": {"index": 2}},
+                "KHR_materials_ior": {"ior": 3}, "KHR_materials_specular": {"specularColorFactor": [0.5, 1, 9]},
+                "KHR_materials_clearcoat": {"clearcoatFactor": 1, "clearcoatRoughnessTexture": {"index": 0}},
+                "KHR_materials_sheen": {"sheenColorFactor": [0, 0, 1], "sheenRoughnessFactor": 0.5}}}"#,
         );
-        assert_eq!((shiny.metallic, shiny.roughness, notices.len()), (0.0, 0.25, 1));
+        let expected =
+            SpecularGlossiness { color: [1.0, 0.5, 0.0], glossiness: 0.75, texture: Some(TextureRef::new(1)) };
+        assert_eq!((m.base_color, m.specular_glossiness), ([0.5, 0.5, 0.5, 1.0], Some(expected)));
+        assert_eq!(m.specular.normal_reflectance(), [0.125, 0.25, 1.0]);
+        assert_eq!(m.clearcoat, Some(Clearcoat { strength: 1.0, texture: None, roughness: 0.0 }));
+        assert_eq!(m.sheen, Some(Sheen { color: [0.0, 0.0, 1.0], texture: None, roughness: 0.5 }));
+        assert_eq!(notices.len(), 1, "{notices:?}");
+        let (plain, _) = convert(r#"{"extensions": {"KHR_materials_clearcoat": {}, "KHR_materials_sheen": {}}}"#);
+        assert_eq!((plain.clearcoat, plain.sheen, plain.specular), (None, None, Specular::default()));
+        assert!((Specular::default().normal_reflectance()[0] - 0.04).abs() < 1e-7);
     }
 
     #[test]

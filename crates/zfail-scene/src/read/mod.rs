@@ -1,7 +1,7 @@
 //! glTF 2.0 files to scenes; .obj, .stl and .ply files too.
 //!
 //! Data flow one way: `container` (bytes to JSON and binary chunk) -> `schema` (typed JSON) -> `extensions` and
-//! `validate` (nothing is trusted before) -> `document` (`buffers` with `meshopt`, `draco`, then accessors) -> `images`
+//! `validate` (nothing is trusted before) -> `variants` -> `document` (`buffers` with `meshopt`, `draco`, then accessors) -> `images`
 //! with `ktx`, `materials` -> `graph` (world transforms) -> `animations` -> `surface` -> `shading` -> `pose` -> `mesh`
 //! -> `instances`, `lights`. The other formats, `obj` with `mtl`, `stl` and `ply`, become a glTF document first (`plain`).
 //!
@@ -15,7 +15,7 @@
 //!   that have a matrix.
 //! - Replaced: missing normals (flat ones, on vertices of their own) and those without a direction, texture
 //!   coordinates and colours that are not finite, rotations without length, joint weights that do not add up to 1.
-//! - Approximated: specular-glossiness (diffuse colour alone) and transmission (blending).
+//! - Approximated: materials, as [`extension_treatment`] says of each extension.
 //! - Tolerated: a byte order mark, misaligned accessors, missing bounds of accessors, bytes after the end, a mesh or
 //!   a skin that nothing uses, key frames before time 0 and two at the same time.
 //! - Baked into meshes of their own, in world space: skins (at rest, until an animation bends them) and meshes that their
@@ -29,8 +29,7 @@
 //!   the fallback, which need not exist), KHR_mesh_quantization, EXT_mesh_gpu_instancing.
 //! - Images: KHR_texture_basisu, EXT_texture_webp (each before the texture's own source, which takes over where the
 //!   extension's image cannot be read), KHR_texture_transform.
-//! - Lights and materials: KHR_lights_punctual, KHR_materials_unlit, KHR_materials_emissive_strength; in part
-//!   KHR_materials_pbrSpecularGlossiness and KHR_materials_transmission.
+//! - Lights and materials: KHR_lights_punctual and what [`extension_treatment`] tells.
 //!
 //! # Other formats
 //! - .obj with .mtl: groups become one mesh. y is up. Missing libraries and textures leave a surface grey or plain.
@@ -83,8 +82,10 @@ mod stl;
 mod surface;
 mod uri;
 mod validate;
+mod variants;
 
 pub use error::{Fault, LoadError};
+pub use extensions::{Treatment, extension_treatment};
 pub use info::{ChannelInfo, FileInfo, MorphInfo, SkinInfo};
 pub use limits::Limits;
 
@@ -130,10 +131,23 @@ pub fn load_with_info(path: &Path, limits: &Limits) -> std::result::Result<(Scen
 /// # Errors
 /// As [`load`].
 pub fn load_animated(path: &Path, limits: &Limits) -> std::result::Result<(Animated, FileInfo), LoadError> {
-    read(path, limits).map_err(|fault| LoadError { file: path.into(), fault })
+    load_variant(path, limits, None)
 }
 
-fn read(path: &Path, limits: &Limits) -> Result<(Animated, FileInfo)> {
+/// [`load_animated`] with the materials of a variant (KHR_materials_variants), by its name or its number from 0; those that
+/// the file shows by default if `None`.
+///
+/// # Errors
+/// As [`load`], and if there is no such variant.
+pub fn load_variant(
+    path: &Path,
+    limits: &Limits,
+    variant: Option<&str>,
+) -> std::result::Result<(Animated, FileInfo), LoadError> {
+    read(path, limits, variant).map_err(|fault| LoadError { file: path.into(), fault })
+}
+
+fn read(path: &Path, limits: &Limits, variant: Option<&str>) -> Result<(Animated, FileInfo)> {
     let budget = Budget::new(*limits);
     let length = uri::regular_file_length(path).map_err(|problem| Fault::Unreadable(io::Error::other(problem)))?;
     budget.charge(length, 1, || "the file".into())?;
@@ -142,8 +156,9 @@ fn read(path: &Path, limits: &Limits) -> Result<(Animated, FileInfo)> {
     let folder = path.parent().unwrap_or(Path::new("."));
 
     let mut notices = Vec::new();
-    let Opened { root, bin, info } = open(&bytes, path, folder, &name, &budget, &mut notices)?;
+    let Opened { mut root, bin, info } = open(&bytes, path, folder, &name, &budget, &mut notices)?;
     validate::check(&root)?;
+    variants::choose(&mut root, variant, &mut notices)?;
     let document = Document::open(root, bin, folder, budget)?;
 
     let mut scene = Scene { name, notices, ..Scene::default() };
@@ -227,7 +242,7 @@ fn read_materials(document: &Document<'_>, folder: &Path, scene: &mut Scene) -> 
     }
     let (textures, index) = materials::textures(&document.root, &index, &mut scene.notices);
     scene.textures = textures;
-    scene.materials = materials::materials(&document.root, &index, &mut scene.notices);
+    scene.materials = materials::materials(&document.root, &index, scene);
     Ok(index)
 }
 

@@ -47,6 +47,20 @@ pub(super) struct Asset {
 pub(super) struct RootExtensions {
     #[serde(rename = "KHR_lights_punctual")]
     pub lights: Option<Lights>,
+    #[serde(rename = "KHR_materials_variants")]
+    pub variants: Variants,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Variants {
+    pub variants: Vec<Variant>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Variant {
+    pub name: String,
 }
 
 #[derive(Debug, Deserialize)]
@@ -121,6 +135,8 @@ pub(super) struct Primitive {
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct PrimitiveExtensions {
+    #[serde(rename = "KHR_materials_variants")]
+    pub variants: VariantMappings,
     #[serde(rename = "KHR_draco_mesh_compression")]
     pub draco: Option<Draco>,
 }
@@ -131,6 +147,19 @@ pub(super) struct Draco {
     pub buffer_view: usize,
     /// Unique ids of the stream's attributes.
     pub attributes: BTreeMap<String, u32>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct VariantMappings {
+    pub mappings: Vec<VariantMapping>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct VariantMapping {
+    pub material: usize,
+    /// Indices of the document's variants.
+    pub variants: Vec<usize>,
 }
 
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
@@ -279,9 +308,79 @@ pub(super) struct MaterialExtensions {
     #[serde(rename = "KHR_materials_emissive_strength")]
     pub emissive_strength: EmissiveStrength,
     #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
-    pub specular_glossiness: Option<SpecularGlossiness>,
+    pub specular_glossiness: Option<Box<SpecularGlossiness>>,
     #[serde(rename = "KHR_materials_transmission")]
-    pub transmission: Transmission,
+    pub transmission: Option<Box<Transmission>>,
+    #[serde(rename = "KHR_materials_volume")]
+    pub volume: Volume,
+    #[serde(rename = "KHR_materials_ior")]
+    pub ior: Ior,
+    #[serde(rename = "KHR_materials_specular")]
+    pub specular: Option<Box<Specular>>,
+    #[serde(rename = "KHR_materials_clearcoat")]
+    pub clearcoat: Option<Box<Clearcoat>>,
+    #[serde(rename = "KHR_materials_sheen")]
+    pub sheen: Option<Box<Sheen>>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct Volume {
+    pub thickness_factor: f64,
+    /// Infinite where absent.
+    pub attenuation_distance: Option<f64>,
+    pub attenuation_color: Option<[f64; 3]>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(default)]
+pub(super) struct Ior {
+    pub ior: f64,
+}
+
+impl Default for Ior {
+    fn default() -> Self {
+        Self { ior: 1.5 }
+    }
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct Specular {
+    pub specular_factor: f64,
+    pub specular_texture: Option<TextureInfo>,
+    pub specular_color_factor: [f64; 3],
+    pub specular_color_texture: Option<TextureInfo>,
+}
+
+impl Default for Specular {
+    fn default() -> Self {
+        Self {
+            specular_factor: 1.0,
+            specular_texture: None,
+            specular_color_factor: [1.0; 3],
+            specular_color_texture: None,
+        }
+    }
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct Clearcoat {
+    pub clearcoat_factor: f64,
+    pub clearcoat_texture: Option<TextureInfo>,
+    pub clearcoat_roughness_factor: f64,
+    pub clearcoat_roughness_texture: Option<TextureInfo>,
+    pub clearcoat_normal_texture: Option<TextureInfo>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct Sheen {
+    pub sheen_color_factor: [f64; 3],
+    pub sheen_color_texture: Option<TextureInfo>,
+    pub sheen_roughness_factor: f64,
+    pub sheen_roughness_texture: Option<TextureInfo>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -303,11 +402,18 @@ pub(super) struct SpecularGlossiness {
     pub diffuse_texture: Option<TextureInfo>,
     pub specular_factor: [f64; 3],
     pub glossiness_factor: f64,
+    pub specular_glossiness_texture: Option<TextureInfo>,
 }
 
 impl Default for SpecularGlossiness {
     fn default() -> Self {
-        Self { diffuse_factor: [1.0; 4], diffuse_texture: None, specular_factor: [1.0; 3], glossiness_factor: 1.0 }
+        Self {
+            diffuse_factor: [1.0; 4],
+            diffuse_texture: None,
+            specular_factor: [1.0; 3],
+            glossiness_factor: 1.0,
+            specular_glossiness_texture: None,
+        }
     }
 }
 

@@ -130,6 +130,10 @@ impl References<'_> {
         for (t, target) in primitive.targets.iter().enumerate() {
             self.attributes(target, &format!("{path}.targets[{t}]"))?;
         }
+        for (m, mapping) in primitive.extensions.variants.mappings.iter().enumerate() {
+            let element = format_args!("{path}.extensions.KHR_materials_variants.mappings[{m}].material");
+            within(mapping.material, root.materials.len(), "materials", element)?;
+        }
         if let Some(draco) = &primitive.extensions.draco {
             let element = format_args!("{path}.extensions.KHR_draco_mesh_compression.bufferView");
             within(draco.buffer_view, root.buffer_views.len(), "bufferViews", element)?;
@@ -246,6 +250,10 @@ impl References<'_> {
 fn texture_slots(material: &Material) -> impl Iterator<Item = (&'static str, &TextureInfo)> {
     let pbr = &material.pbr_metallic_roughness;
     let extensions = &material.extensions;
+    let glossy = extensions.specular_glossiness.as_deref();
+    let (clearcoat, sheen) = (extensions.clearcoat.as_deref(), extensions.sheen.as_deref());
+    let transmission = extensions.transmission.as_deref();
+    let specular = extensions.specular.as_deref();
     [
         ("pbrMetallicRoughness.baseColorTexture", pbr.base_color_texture.as_ref()),
         ("pbrMetallicRoughness.metallicRoughnessTexture", pbr.metallic_roughness_texture.as_ref()),
@@ -254,12 +262,22 @@ fn texture_slots(material: &Material) -> impl Iterator<Item = (&'static str, &Te
         ("emissiveTexture", material.emissive_texture.as_ref()),
         (
             "extensions.KHR_materials_pbrSpecularGlossiness.diffuseTexture",
-            extensions.specular_glossiness.as_ref().and_then(|s| s.diffuse_texture.as_ref()),
+            glossy.and_then(|s| s.diffuse_texture.as_ref()),
+        ),
+        (
+            "extensions.KHR_materials_pbrSpecularGlossiness.specularGlossinessTexture",
+            glossy.and_then(|s| s.specular_glossiness_texture.as_ref()),
         ),
         (
             "extensions.KHR_materials_transmission.transmissionTexture",
-            extensions.transmission.transmission_texture.as_ref(),
+            transmission.and_then(|t| t.transmission_texture.as_ref()),
         ),
+        (
+            "extensions.KHR_materials_specular.specularColorTexture",
+            specular.and_then(|s| s.specular_color_texture.as_ref()),
+        ),
+        ("extensions.KHR_materials_clearcoat.clearcoatTexture", clearcoat.and_then(|c| c.clearcoat_texture.as_ref())),
+        ("extensions.KHR_materials_sheen.sheenColorTexture", sheen.and_then(|s| s.sheen_color_texture.as_ref())),
     ]
     .into_iter()
     .filter_map(|(slot, info)| Some((slot, info?)))

@@ -4,7 +4,7 @@ use super::{Document, Result, WriteError};
 use image::ImageEncoder;
 use image::codecs::png::PngEncoder;
 use serde_json::{Value, json};
-use zfail_plan::scene::{AlphaMode, Filter, Image, Material, Scene, Texture, TextureRef, Wrap};
+use zfail_plan::scene::{AlphaMode, Filter, Image, Material, Scene, Specular, Texture, TextureRef, Wrap};
 
 /// Writes all images, textures and materials with the scene's own indices.
 pub(super) fn write(document: &mut Document, scene: &Scene) -> Result<()> {
@@ -93,7 +93,52 @@ impl Writer<'_> {
         if material.unlit {
             self.extend(&mut json, "KHR_materials_unlit", json!({}));
         }
+        self.reflections(&mut json, material)?;
         Ok(json)
+    }
+
+    fn reflections(&mut self, json: &mut Value, material: &Material) -> Result<()> {
+        if let Some(glossy) = material.specular_glossiness {
+            let mut value = json!({
+                "diffuseFactor": material.base_color,
+                "specularFactor": glossy.color,
+                "glossinessFactor": glossy.glossiness,
+            });
+            self.texture(&mut value, "diffuseTexture", material.base_color_texture, None)?;
+            self.texture(&mut value, "specularGlossinessTexture", glossy.texture, None)?;
+            self.extend(json, "KHR_materials_pbrSpecularGlossiness", value);
+        }
+        let (specular, plain) = (material.specular, Specular::default());
+        if specular.ior != plain.ior {
+            self.extend(json, "KHR_materials_ior", json!({ "ior": specular.ior }));
+        }
+        if specular != (Specular { ior: specular.ior, ..plain }) {
+            let mut value = json!({ "specularFactor": specular.strength, "specularColorFactor": specular.color });
+            self.texture(&mut value, "specularColorTexture", specular.color_texture, None)?;
+            self.extend(json, "KHR_materials_specular", value);
+        }
+        if let Some(coat) = material.clearcoat {
+            let mut value = json!({ "clearcoatFactor": coat.strength, "clearcoatRoughnessFactor": coat.roughness });
+            self.texture(&mut value, "clearcoatTexture", coat.texture, None)?;
+            self.extend(json, "KHR_materials_clearcoat", value);
+        }
+        if let Some(sheen) = material.sheen {
+            let mut value = json!({ "sheenColorFactor": sheen.color, "sheenRoughnessFactor": sheen.roughness });
+            self.texture(&mut value, "sheenColorTexture", sheen.texture, None)?;
+            self.extend(json, "KHR_materials_sheen", value);
+        }
+        if let Some(transmission) = material.transmission {
+            let mut value = json!({ "transmissionFactor": transmission.share });
+            self.texture(&mut value, "transmissionTexture", transmission.texture, None)?;
+            self.extend(json, "KHR_materials_transmission", value);
+            if transmission.tint != [1.0; 3] {
+                // Beer's law over the distance that leaves just this tint.
+                let volume =
+                    json!({ "thicknessFactor": 1, "attenuationDistance": 1, "attenuationColor": transmission.tint });
+                self.extend(json, "KHR_materials_volume", volume);
+            }
+        }
+        Ok(())
     }
 
     /// Factors beyond 1 are split into a factor and a strength, a power of two so that nothing is rounded.

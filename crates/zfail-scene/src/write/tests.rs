@@ -4,8 +4,8 @@ use super::{WriteError, check, to_glb};
 use crate::builtin::shapes::{cuboid, merged, painted, tinted, uv_sphere};
 use glam::{DAffine3, DMat3, DVec3};
 use zfail_plan::scene::{
-    AlphaMode, Camera, Filter, Image, Instance, Light, LightKind, LightShape, MaskCasting, Material, Mesh, Scene,
-    Texture, TextureRef, Wrap,
+    AlphaMode, Camera, Clearcoat, Filter, Image, Instance, Light, LightKind, LightShape, MaskCasting, Material, Mesh,
+    Scene, Sheen, Specular, SpecularGlossiness, Texture, TextureRef, Transmission, Wrap,
 };
 use zfail_plan::view::Projection;
 
@@ -50,7 +50,20 @@ fn sampler() -> Scene {
             emissive_texture: Some(TextureRef::new(0)),
             alpha: AlphaMode::Mask(0.3),
             double_sided: true,
-            unlit: false,
+            specular: Specular { ior: 1.75, strength: 0.5, color: [0.25, 2.0, 0.0], color_texture: Some(scaled) },
+            clearcoat: Some(Clearcoat { strength: 0.75, texture: Some(scaled), roughness: 0.125 }),
+            sheen: Some(Sheen { color: [0.5, 0.0, 0.25], texture: Some(scaled), roughness: 0.375 }),
+            transmission: Some(Transmission { share: 0.625, texture: None, tint: [1.0, 0.5, 0.25] }),
+            ..Material::default()
+        },
+        Material {
+            name: "glossy".into(),
+            specular_glossiness: Some(SpecularGlossiness {
+                color: [0.5, 0.25, 1.0],
+                glossiness: 0.75,
+                texture: Some(scaled),
+            }),
+            ..Material::default()
         },
         Material { name: "glass".into(), alpha: AlphaMode::Blend, unlit: true, ..Material::default() },
     ];
@@ -90,6 +103,7 @@ fn sampler() -> Scene {
     let shaped = |light: Light, shape| Light { shape, ..light };
     Scene {
         name: "scene".into(),
+        blended_casts: false,
         meshes: vec![
             both,
             painted(cuboid(DVec3::ZERO, DVec3::ONE), 1),
