@@ -10,9 +10,9 @@
 //!
 //! # Repairs
 //! - Left out: points and lines, primitives without positions, what remains of a triangle list after the last whole
-//!   triangle, meshes that a node's scale shrinks to a line or a point, images other than PNG, JPEG, WebP and
-//!   KTX 2.0 or damaged inside, every extension that only changes looks, animations of morph weights, of what extensions add and of nodes
-//!   that have a matrix.
+//!   triangle, meshes that a node's scale shrinks to a line or a point, images other than PNG, JPEG, WebP
+//!   and KTX 2.0 or damaged inside, every extension that only changes looks, animations of morph weights, of what
+//!   extensions add and of nodes that have a matrix.
 //! - Replaced: missing normals (flat ones, on vertices of their own) and those without a direction, texture
 //!   coordinates and colours that are not finite, rotations without length, joint weights that do not add up to 1.
 //! - Approximated: specular-glossiness (diffuse colour alone) and transmission (blending).
@@ -35,7 +35,8 @@
 //! # Other formats
 //! - .obj with .mtl: groups become one mesh. y is up. Missing libraries and textures leave a surface grey or plain.
 //! - .stl, binary or ASCII, and .ply with polygons, normals, colours (sRGB) and texture coordinates: z is up.
-//! - None has units: one unit is one metre. All surfaces are shown from both sides. Polygons become fans.
+//! - None has units: one unit is one metre. All surfaces are shown from both sides. Polygons are cut
+//!   into triangles, concave ones of up to 128 corners without overlaps.
 //!
 //! # Extras
 //! What glTF has no word for, in the extras of nodes:
@@ -75,6 +76,7 @@ mod mtl;
 mod obj;
 mod plain;
 mod ply;
+mod polygon;
 mod pose;
 mod schema;
 mod shading;
