@@ -34,7 +34,8 @@
 //! # Other formats
 //! - .obj with .mtl: groups become one mesh. y is up. Missing libraries and textures leave a surface grey or plain.
 //! - .stl, binary or ASCII, and .ply with polygons, normals, colours (sRGB) and texture coordinates: z is up.
-//! - None has units: one unit is one metre. All surfaces are shown from both sides. Polygons become fans.
+//! - None has units: one unit is one metre. All surfaces are shown from both sides. Polygons are cut
+//!   into triangles, concave ones of up to 128 corners without overlaps.
 //!
 //! # Extras
 //! What glTF has no word for, in the extras of nodes:
@@ -75,6 +76,7 @@ mod mtl;
 mod obj;
 mod plain;
 mod ply;
+mod polygon;
 mod pose;
 mod schema;
 mod shading;

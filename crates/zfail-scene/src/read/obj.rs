@@ -1,14 +1,14 @@
 //! .obj files with their .mtl files, through `tobj`.
 //!
 //! In: bytes and the folder that the material libraries lie in. Out: one part per material and set of attributes. Groups
-//! and objects stay together in one mesh, so that a body that is cut into groups stays closed. Polygons become fans,
-//! which is right for convex ones.
+//! and objects stay together in one mesh, so that a body that is cut into groups stays closed.
 
 use super::error::{Result, malformed};
 use super::fence::fenced;
 use super::limits::Budget;
 use super::mtl::Library;
 use super::plain::{Part, Plain, Y_UP, check_finite, linear, nothing_to_draw};
+use super::polygon::Triangulator;
 use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::io::{BufRead, Read};
@@ -34,10 +34,11 @@ pub(super) fn read(bytes: &[u8], folder: &Path, budget: &Budget) -> Result<Plain
     let (library, mut notices) = library.finish();
     let mut parts: BTreeMap<Kind, Part> = BTreeMap::new();
     let mut mismatched = 0;
+    let mut triangulator = Triangulator::default();
     for Model { mesh, .. } in &models {
         let kind = Kind::of(mesh, library.default_material());
         mismatched += usize::from(kind.mismatched);
-        append(parts.entry(kind).or_default(), &kind, mesh, budget)?;
+        append(parts.entry(kind).or_default(), &kind, mesh, &mut triangulator, budget)?;
     }
     if mismatched > 0 {
         notices.push("some corners lack the normal or the texture coordinates that others have: left out there".into());
@@ -79,7 +80,7 @@ impl Kind {
     }
 }
 
-fn append(part: &mut Part, kind: &Kind, mesh: &Mesh, budget: &Budget) -> Result<()> {
+fn append(part: &mut Part, kind: &Kind, mesh: &Mesh, triangulator: &mut Triangulator, budget: &Budget) -> Result<()> {
     let first = part.positions.len();
     let positions: &[[f32; 3]] = mesh.positions.as_chunks().0;
     check_finite(FORMAT, "vertex", positions)?;
@@ -98,12 +99,18 @@ fn append(part: &mut Part, kind: &Kind, mesh: &Mesh, budget: &Budget) -> Result<
         let linear = colors.map(|&[r, g, b]| [linear(r), linear(g), linear(b), 1.0]);
         part.colors.get_or_insert_default().extend(linear);
     }
-    for triangle in mesh.indices.as_chunks::<3>().0 {
-        let moved = triangle.map(|v| (first as u32).saturating_add(v));
-        if moved.iter().any(|&v| v >= end) {
-            return Err(malformed(FORMAT, "the file", "has a face beyond its vertices"));
-        }
-        part.triangles.push(moved);
+    let corners: Vec<u32> = mesh.indices.iter().map(|&v| (first as u32).saturating_add(v)).collect();
+    if corners.iter().any(|&v| v >= end) {
+        return Err(malformed(FORMAT, "the file", "has a face beyond its vertices"));
+    }
+    if mesh.face_arities.is_empty() {
+        part.triangles.extend(corners.as_chunks().0);
+    }
+    let mut rest = &*corners;
+    for &arity in &mesh.face_arities {
+        let Some((face, after)) = rest.split_at_checked(arity as usize) else { break };
+        triangulator.cut(face, |v| part.positions[v as usize], &mut part.triangles);
+        rest = after;
     }
     Ok(())
 }
@@ -139,7 +146,7 @@ fn plain_lines(bytes: &[u8]) -> (String, u64) {
 }
 
 fn parse(text: &str, library: &Library<'_>) -> Result<Vec<Model>> {
-    let options = LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
+    let options = LoadOptions { single_index: true, triangulate: false, ignore_points: true, ignore_lines: true };
     let lines = Cell::new(0);
     let parsed = fenced(|| {
         let mut reader = Counted { text: text.as_bytes(), lines: &lines };

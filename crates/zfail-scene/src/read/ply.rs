@@ -1,11 +1,12 @@
 //! .ply files: ASCII and binary of both byte orders, with polygons, normals, colours and texture coordinates.
 //!
-//! In: bytes. Out: one part. Polygons become fans around their first corner, which is right for convex ones.
+//! In: bytes, and the folder of the texture. Out: one part.
 
 use super::error::{Result, malformed};
 use super::fence::fenced;
 use super::limits::Budget;
 use super::plain::{Part, Plain, Z_UP, check_finite, grey, linear, nothing_to_draw, texture};
+use super::polygon::Triangulator;
 use super::uri;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{
@@ -142,15 +143,14 @@ fn assemble(header: &Header, vertices: &[Vertex], origin: [f64; 3], faces: &[Fac
         return Err(malformed(FORMAT, "element vertex", "has no property x"));
     }
     let mut triangles = Vec::new();
+    let mut triangulator = Triangulator::default();
     for (i, face) in faces.iter().enumerate() {
         let beyond = face.corners.iter().find(|corner| **corner as usize >= vertices.len());
         if let Some(corner) = beyond {
             let problem = format!("refers to vertex {corner}, but there are {}", vertices.len());
             return Err(malformed(FORMAT, format!("face {i}"), problem));
         }
-        if let [hub, rim @ ..] = &*face.corners {
-            triangles.extend(rim.windows(2).map(|edge| [*hub, edge[0], edge[1]]));
-        }
+        triangulator.cut(&face.corners, |v| positions[v as usize], &mut triangles);
     }
     Ok(Part {
         positions,

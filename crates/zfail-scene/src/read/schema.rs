@@ -758,7 +758,13 @@ mod tests {
     /// What the reader charges for each object in the JSON covers the types that it becomes.
     #[test]
     fn no_object_is_larger_than_its_charge() {
-        let sizes = [size_of::<Node>(), size_of::<Material>(), size_of::<Accessor>(), size_of::<Primitive>()];
+        let sizes = [
+            size_of::<Node>(),
+            size_of::<Material>(),
+            size_of::<Accessor>(),
+            size_of::<Primitive>(),
+            size_of::<BufferView>(),
+        ];
         assert!(sizes.iter().all(|&size| size <= 1024), "{sizes:?}");
     }
 }

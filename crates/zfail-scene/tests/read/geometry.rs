@@ -101,6 +101,27 @@ fn signed_normalized_values_reach_minus_one() {
     assert_eq!(gltf.scene().meshes[0].normals, [[0.0, 0.0, -1.0], [0.0, 0.0, -1.0], [0.0, 0.0, 1.0]]);
 }
 
+/// KHR_mesh_quantization: small integers with padding between them, also in morph targets.
+#[test]
+fn quantized_morphs_and_padded_strides() {
+    let gltf = Gltf::with_primitive(|g| {
+        let positions = g.accessor(&[0, 0, 0, 9, 127, 0, 0, 9, 0, 0x81, 64, 9], 5120, "VEC3", 3);
+        g.json["accessors"][positions]["normalized"] = json!(true);
+        g.json["bufferViews"][positions]["byteStride"] = json!(4);
+        let shorts: Vec<u8> = [0i16, 0, 4, 9, 0, 0, -8, 9, 2, 0, 0, 9].iter().flat_map(|x| x.to_le_bytes()).collect();
+        let deltas = g.accessor(&shorts, 5122, "VEC3", 3);
+        g.json["bufferViews"][deltas]["byteStride"] = json!(8);
+        json!({"attributes": {"POSITION": positions}, "targets": [{"POSITION": deltas}]})
+    });
+    let mut gltf = gltf;
+    gltf.json["meshes"][0]["weights"] = json!([0.5]);
+    gltf.json["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
+    let scene = gltf.scene();
+    assert!(scene.notices.is_empty(), "{:?}", scene.notices);
+    let expected = [[0.0, 0.0, 2.0], [1.0, 0.0, -4.0], [1.0, -1.0, 64.0 / 127.0]];
+    assert_eq!(scene.meshes[0].positions, expected);
+}
+
 #[test]
 fn interleaved_and_misaligned_data() {
     // Position, then two bytes of something else: a stride of 14, which misaligns every second vertex.

@@ -104,6 +104,14 @@ fn obj_with_materials() {
 }
 
 #[test]
+fn concave_faces_do_not_overlap() {
+    let arrow = "v 0 0 0\nv 2 1 0\nv 0 2 0\nv 1 1 0\nf 1 2 3 4\nf 1 2 4\n";
+    let triangles = world_triangles(&loaded(&[("a.obj", arrow.as_bytes())]));
+    assert_eq!(triangles.len(), 3);
+    assert!(triangles.iter().all(|[a, b, c]| (*b - *a).cross(*c - *a).z > 0.0), "{triangles:?}");
+}
+
+#[test]
 fn obj_without_its_other_files() {
     let scene = loaded(&[("a.obj", OBJ.as_bytes())]);
     assert_eq!(scene.materials.len(), 1);
