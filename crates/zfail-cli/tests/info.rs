@@ -118,3 +118,22 @@ fn skins_morphs_and_extensions_of_a_file_are_named() {
     let text = zfail(folder.path(), &["info", "small.gltf"]).ok().stdout;
     assert!(text.contains("1 skin with 2 joints\n1 mesh with 2 morph targets\n"), "{text}");
 }
+
+#[test]
+fn masked_surfaces_are_cut_unless_told_otherwise() {
+    let folder = tempfile::tempdir().unwrap();
+    let tree = |masks: &[&str]| -> Value {
+        let args = [&["info", "builtin:foliage", "--json"][..], masks].concat();
+        let report: Value = serde_json::from_str(&zfail(folder.path(), &args).ok().stdout).unwrap();
+        let meshes = report["meshes"].as_array().unwrap();
+        meshes.iter().find(|mesh| mesh["name"] == "tree").unwrap().clone()
+    };
+    let number = |mesh: &Value, what: &str| mesh[what].as_u64().unwrap();
+    let (cut, fine) = (tree(&[]), tree(&["--alpha-shadows", "cut=0.25"]));
+    let (solid, off) = (tree(&["--alpha-shadows", "solid"]), tree(&["--alpha-shadows", "off"]));
+    assert!(number(&fine, "triangles") > number(&cut, "triangles"));
+    assert!(number(&cut, "triangles") > 4 * number(&solid, "triangles"));
+    assert_eq!(number(&solid, "triangles"), number(&off, "triangles"));
+    assert_eq!((number(&cut, "not_casting"), number(&solid, "not_casting")), (0, 0));
+    assert!(number(&off, "not_casting") > 100);
+}

@@ -26,6 +26,8 @@ fn wrong_usage_is_one_line_and_exit_code_2() {
         (&["render", "small.gltf", "-o", "a.png", "--samples", "2"], &["1 or 4"]),
         (&["render", "small.gltf", "-o", "a.png", "--technique", "everit-kilgard"], &["auto", "everitt-kilgard"]),
         (&["render", "small.gltf", "-o", "a.png", "--exposure", "bright"], &["auto", "stops"]),
+        (&["render", "small.gltf", "-o", "a.png", "--alpha-shadows", "on"], &["off, solid or cut=PIXELS"]),
+        (&["render", "small.gltf", "-o", "a.png", "--alpha-shadows", "cut=0"], &["number from 0.02", "cut=1"]),
         (&["render", "small.gltf", "-o", "a.png", "--backend", "vulkn"], &["vulkan", "gl"]),
         (&["render", "small.gltf", "-o", "a.png", "--light", "sun"], &["number of a light"]),
         (&["render", "small.gltf", "-o", "a.png", "--light", "3"], &["'3'", "0 'sun'", "1 'lamp'", "2 'torch'"]),

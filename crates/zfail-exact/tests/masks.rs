@@ -43,7 +43,7 @@ fn noisy(seed: u64) -> (Scene, View) {
     let hash = |k: u32| (k ^ seed as u32).wrapping_mul(0x9e37_79b9).wrapping_mul(k | 1).to_be_bytes()[0];
     let rgba = (0..SIDE * SIDE).flat_map(|k| [200, 200, 200, hash(k + 1)]).collect();
     scene.images.push(Image { name: "noise".into(), width: SIDE, height: SIDE, rgba });
-    let mag = if seed % 3 == 0 { Filter::Nearest } else { Filter::Linear };
+    let mag = if seed.is_multiple_of(3) { Filter::Nearest } else { Filter::Linear };
     let wraps = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
     scene.textures.push(Texture {
         image: 0,

@@ -182,7 +182,7 @@ fn misjudged(drawn: (&AlphaField<'_>, f64), expected: (&AlphaField<'_>, f64), se
             }
             let point = texels[0] + (texels[1] - texels[0]) * u + (texels[2] - texels[0]) * v;
             let there = field.at(point) >= level;
-            let around = (0..16).map(|k| point + DVec2::from_angle(f64::from(k) * 0.3927) * 0.03);
+            let around = (0..16).map(|k| point + DVec2::from_angle(f64::from(k) * std::f64::consts::FRAC_PI_8) * 0.03);
             if around.into_iter().any(|near| (field.at(near) >= level) != there) {
                 continue;
             }
