@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 use std::collections::HashMap;
-use zfail_plan::scene::{AlphaMode, Scene};
+use zfail_plan::scene::{AlphaMode, Material, Scene};
 
 /// A triangle as the oracle sees it.
 #[derive(Clone, Debug)]
