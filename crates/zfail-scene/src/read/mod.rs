@@ -10,7 +10,7 @@
 //! # Repairs
 //! - Left out: points and lines, primitives without positions, what remains of a triangle list after the last whole
 //!   triangle, meshes that a node's scale shrinks to a line or a point, images other than PNG and JPEG or damaged
-//!   inside, every extension that only changes looks, animations of morph weights, of what extensions add and of nodes
+//!   inside, what [`extension_treatment`] says is ignored, animations of morph weights, of what extensions add and of nodes
 //!   that have a matrix.
 //! - Replaced: missing normals (flat ones, on vertices of their own) and those without a direction, texture
 //!   coordinates and colours that are not finite, rotations without length, joint weights that do not add up to 1.
