@@ -168,6 +168,10 @@ fn materials_and_exclusions() {
     };
     assert!(!with(|_| {}).lit);
     assert!(with(|s| s.materials[1].alpha = AlphaMode::Blend).lit);
+    let cast = with(|s| (s.materials[1].alpha, s.blended_casts) = (AlphaMode::Blend, true));
+    assert!(!cast.lit && cast.surface);
+    let unseen = with(|s| (s.materials[0].alpha, s.blended_casts) = (AlphaMode::Blend, true));
+    assert!(!unseen.surface, "blended surfaces cast without being seen");
     assert!(!with(|s| s.materials[1].alpha = AlphaMode::Mask(0.5)).lit, "masked triangles cast as solid ones");
     assert!(with(|s| s.instances[1].casts_shadow = false).lit);
     assert!(with(|s| s.lights[0].excluded = vec![1]).lit);

@@ -1,10 +1,10 @@
 //! How far a smooth surface tilts away from the triangles that stand for it.
 //!
-//! In: a mesh. Out: per vertex its tilt, the sine of the greatest angle between its normal and the normals of the
-//! facets around it. A facet that
-//! turns away from a light lies in its own shadow, exactly and with a straight border, while the interpolated normal may
-//! still face the light: along the terminator of a coarse mesh that shows as teeth. Where the light's angle to the normal
-//! leaves no facet that could have turned away, nothing of this happens; `light.wgsl` fades the light to 0 before.
+//! In: a mesh. Out: per vertex its tilt, the sine of the greatest angle between its normal and the normals of the facets
+//! around it. A facet that turns away from a light lies in its own shadow, exactly and with a straight border, while the
+//! interpolated normal may still face the light: along the terminator of a coarse mesh that shows as teeth. A facet that
+//! turns away has, at every one of its points, a cosine of light and interpolated normal of at most the interpolated tilt,
+//! whatever the kind of light; `light.wgsl` fades light to 0 there. Stencil and masks know nothing of it.
 //!
 //! The problem is that of Chiang, Li and Burley, "Taming the Shadow Terminator" (2019), and Hanika, "Hacking the Shadow
 //! Terminator" (2021). Both work on the facet at hand, which moves rays or shows every facet of a fade; a bound per vertex

@@ -11,8 +11,8 @@
 //! # Repairs
 //! - Left out: points and lines, primitives without positions, what remains of a triangle list after the last whole
 //!   triangle, meshes that a node's scale shrinks to a line or a point, images other than PNG, JPEG, WebP and
-//!   KTX 2.0 or damaged inside, every extension that only changes looks, animations of what extensions add and of nodes
-//!   that have a matrix.
+//!   KTX 2.0 or damaged inside, what [`extension_treatment`] says is ignored, animations of what extensions add and of
+//!   nodes that have a matrix.
 //! - Replaced: missing normals (flat ones, on vertices of their own) and those without a direction, texture
 //!   coordinates and colours that are not finite, rotations without length, joint weights that do not add up to 1.
 //! - Approximated: materials, as [`extension_treatment`] says of each extension.
