@@ -10,7 +10,16 @@ mod build;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use build::{F32, Gltf, TRIANGLE};
+use draco_core::{
+    DataType, EncoderBuffer, EncoderOptions, FaceIndex, GeometryAttributeType, Mesh, MeshEncoder, PointAttribute,
+    PointIndex,
+};
 use image::{DynamicImage, ImageFormat, RgbaImage};
+use meshoptimizer_rs::Workspace;
+use meshoptimizer_rs::codec::{
+    ExpMode, IndexEncoding, VertexEncoding, encode_filter_exp, encode_index_buffer, encode_index_sequence,
+    encode_vertex_buffer,
+};
 use serde_json::{Value, json};
 use std::io::{Cursor, Error, Result};
 use std::path::{Path, PathBuf};
@@ -40,9 +49,11 @@ fn main() -> Result<()> {
     for (name, file) in models() {
         put("model", name, &file)?;
     }
-    // Nothing here can pack; the decoders' own tests hold what they unpack.
-    for target in ["draco", "meshopt"] {
-        put(target, "empty", &[0; 16])?;
+    for (name, file) in packed_buffers() {
+        put("meshopt", name, &file)?;
+    }
+    for (name, method) in [("sequential", 0), ("edgebreaker", 1)] {
+        put("draco", name, &packed_mesh(method))?;
     }
     check(&folder)
 }
@@ -392,4 +403,75 @@ fn models() -> Vec<(&'static str, Vec<u8>)> {
         ("ply-little", with(2, &ply("binary_little_endian", f32::to_le_bytes, i32::to_le_bytes))),
         ("ply-big", with(2, &ply("binary_big_endian", f32::to_be_bytes, i32::to_be_bytes))),
     ]
+}
+
+/// A strip of quads in the plane z = 0.
+fn strip() -> (Vec<[f32; 3]>, Vec<u32>) {
+    let positions = (0..12_u8).map(|i| [f32::from(i / 2), f32::from(i % 2) + 0.125 * f32::from(i), 0.0]).collect();
+    let quad = |q: u32| [2 * q, 2 * q + 2, 2 * q + 1, 2 * q + 1, 2 * q + 2, 2 * q + 3];
+    (positions, (0..5).flat_map(quad).collect())
+}
+
+/// Buffers in each of meshoptimizer's modes, behind the bytes that say what they are.
+fn packed_buffers() -> Vec<(&'static str, Vec<u8>)> {
+    let (positions, indices) = strip();
+    let bytes: Vec<u8> = positions.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+    let (count, workspace) = (positions.len(), &mut Workspace::default());
+    let vertices = |version: u8, workspace: &mut Workspace| {
+        let encoding = VertexEncoding::new(version, 2).expect("a version that there is");
+        encode_vertex_buffer(&bytes, count, 12, encoding, workspace).expect("an encoder")
+    };
+    let buffers = [
+        ("vertices-0", [0, 12, count], vertices(0, workspace)),
+        ("vertices-1", [128, 12, count], vertices(1, workspace)),
+        ("exponential", [9, 12, count], {
+            let filtered = encode_filter_exp(count, 12, 20, positions.as_flattened(), ExpMode::Separate, workspace);
+            let encoding = VertexEncoding::new(0, 2).expect("a version that there is");
+            encode_vertex_buffer(&filtered.expect("a filter"), count, 12, encoding, workspace).expect("an encoder")
+        }),
+        (
+            "triangles",
+            [1, 4, indices.len()],
+            encode_index_buffer(&indices, IndexEncoding::DEFAULT, workspace).expect("an encoder"),
+        ),
+        (
+            "indices",
+            [2, 4, indices.len()],
+            encode_index_sequence(&indices, IndexEncoding::DEFAULT, workspace).expect("an encoder"),
+        ),
+    ];
+    buffers
+        .into_iter()
+        .map(|(name, head, packed)| (name, [head.map(|n| n as u8).as_slice(), &packed].concat()))
+        .collect()
+}
+
+/// The strip with texture coordinates as Draco packs it, behind the bytes that say what is in it.
+fn packed_mesh(method: i32) -> Vec<u8> {
+    let (positions, indices) = strip();
+    let mut mesh = Mesh::new();
+    let uv: Vec<[f32; 2]> = positions.iter().map(|p| [p[0] / 8.0, p[1] / 4.0]).collect();
+    let values = |kind, lists: Vec<&[f32]>| {
+        let mut attribute = PointAttribute::new();
+        attribute.init(kind, lists[0].len() as u8, DataType::Float32, false, lists.len());
+        for (i, list) in lists.iter().enumerate() {
+            let bytes: Vec<u8> = list.iter().flat_map(|x| x.to_le_bytes()).collect();
+            attribute.buffer_mut().write(i * bytes.len(), &bytes);
+        }
+        attribute
+    };
+    mesh.add_attribute(values(GeometryAttributeType::Position, positions.iter().map(|p| p.as_slice()).collect()));
+    mesh.add_attribute(values(GeometryAttributeType::TexCoord, uv.iter().map(|t| t.as_slice()).collect()));
+    mesh.set_num_faces(indices.len() / 3);
+    for (i, face) in (0..).zip(indices.as_chunks::<3>().0) {
+        mesh.set_face(FaceIndex(i), face.map(PointIndex));
+    }
+    let mut encoder = MeshEncoder::new();
+    encoder.set_mesh(mesh);
+    let mut options = EncoderOptions::new();
+    options.set_encoding_method(method);
+    options.set_compression_level(5);
+    let mut packed = EncoderBuffer::new();
+    encoder.encode(&options, &mut packed).expect("an encoder");
+    [&[positions.len() as u8, indices.len() as u8 / 3, 1], packed.data()].concat()
 }

@@ -61,7 +61,7 @@ fn fuzz_target(program: &Path, target: &str, seconds: u64) -> Result<bool, Strin
     let mut command = Command::new(program);
     command.current_dir(root()).arg(learned).args(seeds.iter().filter(|folder| root().join(folder).is_dir()));
     command.args([format!("-max_total_time={seconds}"), format!("-artifact_prefix=fuzz/artifacts/{target}-")]);
-    command.args(["-timeout=10", "-rss_limit_mb=1024", "-print_final_stats=1"]);
+    command.args(["-max_len=65536", "-timeout=10", "-rss_limit_mb=1024", "-print_final_stats=1"]);
     // Every input is written to a file before it is loaded.
     if env::var_os("TMPDIR").is_none() && Path::new("/dev/shm").is_dir() {
         command.env("TMPDIR", "/dev/shm");

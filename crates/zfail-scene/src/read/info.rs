@@ -9,6 +9,8 @@ use serde::Serialize;
 /// What a file says about itself, beyond the scene that was made of it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct FileInfo {
+    /// The format: `glTF`, `OBJ`, `STL` or `PLY`. Only glTF files fill all of what follows.
+    pub format: &'static str,
     /// `asset.version`.
     pub version: String,
     /// The program that wrote the file.
@@ -67,6 +69,7 @@ impl FileInfo {
             counts
         };
         Self {
+            format: "glTF",
             version: root.asset.version.clone(),
             generator: root.asset.generator.clone(),
             extensions_used: root.extensions_used.clone(),

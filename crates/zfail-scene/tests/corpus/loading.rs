@@ -73,22 +73,33 @@ pub fn image(bytes: &[u8]) {
     load("glb", &container(&gltf, &binary(&[bytes])));
 }
 
-/// A mesh as Draco packs it.
+/// The numbers of points and of triangles, a byte that chooses attributes beside the position, and a mesh as Draco packs
+/// it.
 pub fn draco(bytes: &[u8]) {
-    let mut gltf = triangle(&[bytes]);
-    gltf["extensionsUsed"] = json!(["KHR_draco_mesh_compression"]);
-    gltf["extensionsRequired"] = gltf["extensionsUsed"].clone();
-    let attributes = json!({ "POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2, "JOINTS_0": 3 });
-    let draco = json!({ "KHR_draco_mesh_compression": { "bufferView": 1, "attributes": attributes } });
-    for (shape, component, count) in [("VEC3", 5126, 24), ("VEC2", 5126, 24), ("VEC4", 5121, 24), ("SCALAR", 5123, 36)]
+    let Some((&[points, triangles, choice], packed)) = bytes.split_first_chunk() else { return };
+    let mut gltf = triangle(&[packed]);
+    let mut attributes = json!({ "POSITION": 0 });
+    let mut accessors = json!({ "POSITION": 1 });
+    let mut accessor = |component: u32, shape: &str, count: usize| {
+        let list = gltf["accessors"].as_array_mut().expect("a list");
+        list.push(json!({ "componentType": component, "type": shape, "count": count }));
+        list.len() - 1
+    };
+    accessor(5126, "VEC3", points.into());
+    for (bit, (name, component, shape)) in
+        [("TEXCOORD_0", 5126, "VEC2"), ("NORMAL", 5126, "VEC3"), ("JOINTS_0", 5121, "VEC4")].into_iter().enumerate()
     {
-        let accessor = json!({ "componentType": component, "type": shape, "count": count });
-        gltf["accessors"].as_array_mut().expect("a list").push(accessor);
+        if choice >> bit & 1 == 1 {
+            attributes[name] = json!(bit + 1);
+            accessors[name] = json!(accessor(component, shape, points.into()));
+        }
     }
-    gltf["meshes"] = json!([{ "primitives": [{
-        "attributes": { "POSITION": 1, "NORMAL": 1, "TEXCOORD_0": 2, "JOINTS_0": 3 }, "indices": 4, "extensions": draco,
-    }] }]);
-    load("glb", &container(&gltf, &binary(&[bytes])));
+    let indices = accessor(5123, "SCALAR", 3 * usize::from(triangles));
+    let draco = json!({ "KHR_draco_mesh_compression": { "bufferView": 1, "attributes": attributes } });
+    gltf["meshes"][0]["primitives"][0] = json!({ "attributes": accessors, "indices": indices, "extensions": draco });
+    gltf["extensionsUsed"] = json!(["KHR_draco_mesh_compression"]);
+    gltf["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
+    load("glb", &container(&gltf, &binary(&[packed])));
 }
 
 /// A byte that chooses mode and filter, one for the stride, one for the count, and a buffer as meshoptimizer packs it.
@@ -104,13 +115,13 @@ pub fn meshopt(bytes: &[u8]) {
     gltf["buffers"].as_array_mut().expect("a list").push(json!({
         "byteLength": stride * count, "extensions": { name: { "fallback": true } },
     }));
-    let mut packed = gltf["bufferViews"][1].clone();
+    let mut view = gltf["bufferViews"][1].clone();
     for (key, value) in
         [("byteStride", json!(stride)), ("count", json!(count)), ("mode", json!(mode)), ("filter", json!(filter))]
     {
-        packed[key] = value;
+        view[key] = value;
     }
-    gltf["bufferViews"][1] = json!({ "buffer": 1, "byteLength": stride * count, "extensions": { name: packed } });
+    gltf["bufferViews"][1] = json!({ "buffer": 1, "byteLength": stride * count, "extensions": { name: view } });
     if mode == "ATTRIBUTES" {
         gltf["bufferViews"][1]["byteStride"] = json!(stride);
     }
@@ -125,7 +136,7 @@ pub fn meshopt(bytes: &[u8]) {
     } else {
         primitive["indices"] = json!(1)
     }
-    load("glb", &container(&gltf, &binary(&[&bytes[3..]])));
+    load("glb", &container(&gltf, &binary(&[packed])));
 }
 
 /// A byte that chooses the format, and a file of it.
