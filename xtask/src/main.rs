@@ -1,8 +1,9 @@
-//! Set-up, demo and tests: `cargo xtask demo` and `cargo xtask test`.
+//! Set-up, demo and tests: `cargo xtask demo` and `cargo xtask test`; and fuzzing, `cargo xtask fuzz`.
 //!
 //! Only the standard library is used, so that the first of these commands on a new machine starts within seconds.
 
 mod checks;
+mod fuzz;
 mod setup;
 
 use std::env;
@@ -15,14 +16,17 @@ Usage: cargo xtask <COMMAND>
 Commands:
   demo   Render the gallery of built-in scenes into ./gallery
   test   Run every check: format, lints, documentation, tests, benches in test mode
+  fuzz SECONDS [TARGET...]
+         Fuzz the loaders, each target for so long; needs a C++ compiler
 
-Both install a software Vulkan driver first if the machine has no graphics adapter (Debian and Ubuntu, as root).";
+The first two install a software Vulkan driver first if the machine has no graphics adapter (Debian and Ubuntu, as root).";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();
     let result = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["demo"] => setup::graphics_adapter().and_then(|()| demo()),
         ["test"] => setup::graphics_adapter().and_then(|()| checks::run()),
+        ["fuzz", seconds, ref targets @ ..] => fuzz::run(seconds, targets),
         ["help" | "-h" | "--help"] => {
             println!("{USAGE}");
             Ok(())

@@ -40,7 +40,7 @@ pub fn text(report: &Report) -> String {
 
 fn file(page: &mut Page, info: &FileInfo) {
     let generator = info.generator.as_ref().map(|generator| format!(", generator '{generator}'")).unwrap_or_default();
-    page.line(0, &format!("glTF {}{generator}", info.version));
+    page.line(0, &format!("{} {}{generator}", info.format, info.version));
     if !info.skins.is_empty() {
         let joints = info.skins.iter().map(|skin| skin.joints).sum();
         page.line(0, &format!("{} with {}", count(info.skins.len(), "skin"), count(joints, "joint")));
