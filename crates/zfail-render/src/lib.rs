@@ -49,5 +49,5 @@ pub use renderer::Renderer;
 pub use settings::{Exposure, Settings};
 pub use stats::{FrameStats, LightFigures, TriangleFigures};
 pub use wgpu;
-pub use zfail::{Technique, Tiles, UnknownTechnique};
+pub use zfail::{Silhouettes, Technique, Tiles, UnknownTechnique};
 pub use zfail_plan;

@@ -434,13 +434,7 @@ impl Shadows {
 }
 
 /// Finds the casters of which the device has room for all lists that there may be, and is worth asking.
-fn find_extractable(
-    extractable: &mut Vec<bool>,
-    device: &Device,
-    frame: &Frame<'_>,
-    arena: &Arena,
-    costs: CostModel,
-) {
+fn find_extractable(extractable: &mut Vec<bool>, device: &Device, frame: &Frame<'_>, arena: &Arena, costs: CostModel) {
     extractable.clear();
     let limits = device.limits();
     let choice = frame.measures.silhouettes;

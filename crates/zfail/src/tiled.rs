@@ -45,7 +45,9 @@ pub(crate) fn can_tile(draw: &Draw) -> bool {
     let volume = &draw.volume;
     draw.extraction.is_none()
         && draw.z_pass
-        && volume.dark_cap.is_empty() && volume.light_cap.is_empty() && volume.light_cap_reversed.is_empty()
+        && volume.dark_cap.is_empty()
+        && volume.light_cap.is_empty()
+        && volume.light_cap_reversed.is_empty()
 }
 
 impl Tiled {

@@ -187,19 +187,24 @@ fn tiles_give_the_verdicts_of_the_rasteriser() {
 fn silhouettes_of_the_device_count_alike() {
     let Some(device) = device() else { return };
     let gpu = |technique: Technique| Measures { silhouettes: Silhouettes::Gpu, ..technique.measures() };
+    let steps = [
+        gpu(Technique::Auto),
+        gpu(Technique::EverittKilgard),
+        gpu(Technique::Mcguire),
+        Measures { fan: true, ..gpu(Technique::EverittKilgard) },
+    ];
     let (mut extracted, mut fans, mut caps, mut exposed) = (0, 0, 0, 0);
-    for seed in 0..SEEDS {
+    for seed in 0..SEEDS / 2 {
         let truth = device.truth(seed);
-        for technique in Technique::ALL {
-            let (image, plan) = device.draw(seed, gpu(technique), Counting::Raw, |_| {});
+        for measures in steps {
+            let (image, plan) = device.draw(seed, measures, Counting::Raw, |_| {});
             let wrong = truth.iter().zip(&image).filter(|(a, b)| a != b).count();
-            assert_eq!(wrong, 0, "seed {seed}: {wrong} pixels differ with {technique}");
+            assert_eq!(wrong, 0, "seed {seed}: {wrong} pixels differ with {measures:?}");
             let extractions = || plan.draws.iter().filter_map(|draw| draw.extraction.as_ref());
             extracted += extractions().count();
             fans += extractions().filter(|e| e.dark_cap == DarkCap::Fan).count();
             caps += extractions().filter(|e| e.dark_cap == DarkCap::Triangles).count();
             exposed += extractions().filter(|e| e.light_cap == LightCap::Exposed).count();
-            // The room casts from inside; all but it and the sheets are closed. None has coincident triangles.
             assert_eq!(extractions().count(), plan.draws.len(), "seed {seed}: a caster stayed on the CPU");
         }
         let lit = |measures| {
@@ -209,7 +214,7 @@ fn silhouettes_of_the_device_count_alike() {
         assert_eq!(lit(Technique::EverittKilgard.into()), lit(gpu(Technique::Auto)), "seed {seed}: verdicts differ");
     }
     println!("{extracted} extracted, {fans} fans, {caps} dark caps, {exposed} exposed light caps");
-    assert!(extracted > 500 && fans > 50 && caps > 100 && exposed > 50, "{extracted} {fans} {caps} {exposed}");
+    assert!(extracted > 250 && fans > 30 && caps > 60 && exposed > 50, "{extracted} {fans} {caps} {exposed}");
 
     let faults: [(&str, fn(&mut Extraction)); 3] = [
         ("light caps", |extraction| extraction.light_cap = LightCap::None),
@@ -221,8 +226,8 @@ fn silhouettes_of_the_device_count_alike() {
     for (name, fault) in faults {
         let edit = |plan: &mut FramePlan| plan.draws.iter_mut().filter_map(|d| d.extraction.as_mut()).for_each(fault);
         let drawn = |seed| device.draw(seed, gpu(Technique::Mcguire), Counting::Raw, edit).0;
-        let noticed = (0..SEEDS / 2).filter(|&seed| drawn(seed) != device.truth(seed)).count();
-        println!("without {name}: noticed in {noticed} of {} scenes", SEEDS / 2);
+        let noticed = (0..SEEDS / 8).filter(|&seed| drawn(seed) != device.truth(seed)).count();
+        println!("without {name}: noticed in {noticed} of {} scenes", SEEDS / 8);
         assert!(noticed >= 2, "without {name}: noticed in {noticed} scenes only");
     }
 }

@@ -249,7 +249,9 @@ impl Pair {
     /// Whether [`Self::build_caps`] may have something to do.
     pub fn lacks_caps(&self, topology: &Topology) -> bool {
         let wanted = self.wanted(topology);
-        self.is_planned() && (wanted.light_cap && !topology.twins.is_empty() || self.pieces().iter().any(|p| p.have.union(wanted) != p.have))
+        self.is_planned()
+            && (wanted.light_cap && !topology.twins.is_empty()
+                || self.pieces().iter().any(|p| p.have.union(wanted) != p.have))
     }
 
     /// Adds the caps that this frame draws to the sides, unless they are there.

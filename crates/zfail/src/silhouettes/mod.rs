@@ -186,13 +186,13 @@ impl Silhouettes {
     ) {
         let mut encoder = device.create_command_encoder(&CommandEncoderDescriptor { label: Some("extraction") });
         let limit = u64::from(device.limits().max_compute_workgroups_per_dimension).max(1);
-        let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor { label: Some("extraction"), ..Default::default() });
+        let mut pass =
+            encoder.begin_compute_pass(&ComputePassDescriptor { label: Some("extraction"), ..Default::default() });
         // All weights first: casters do not wait for each other then.
         for (pipeline, edges) in [(&self.face, false), (&self.extrude, true)] {
             pass.set_pipeline(pipeline);
-            let stale = |draw: &&Draw| {
-                draw.extraction.as_ref().is_some_and(|e| self.stale.contains(&(e.light, draw.caster)))
-            };
+            let stale =
+                |draw: &&Draw| draw.extraction.as_ref().is_some_and(|e| self.stale.contains(&(e.light, draw.caster)));
             for draw in plan.draws.iter().filter(stale) {
                 let Some((extraction, (mesh, _))) = draw.extraction.as_ref().zip(caster(draw)) else { continue };
                 let Some((lists, mesh)) =
@@ -250,7 +250,11 @@ impl MeshBuffers {
         let buffer = |label, contents: &[u8]| {
             // Bindings may not be empty.
             let contents = if contents.is_empty() { &[0; 16] } else { contents };
-            device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents, usage: BufferUsages::STORAGE })
+            device.create_buffer_init(&BufferInitDescriptor {
+                label: Some(label),
+                contents,
+                usage: BufferUsages::STORAGE,
+            })
         };
         Self {
             triangle_count: incidence.triangles.len() as u64,
