@@ -49,5 +49,6 @@ pub use renderer::Renderer;
 pub use settings::{Exposure, Settings};
 pub use stats::{FrameStats, LightFigures, TriangleFigures};
 pub use wgpu;
+pub use zfail;
 pub use zfail::{Silhouettes, Technique, Tiles, UnknownTechnique};
 pub use zfail_plan;

@@ -2,7 +2,10 @@
 //!
 //! In: a device. Out: constants, measured on volumes like those whose choice is in doubt: many long, thin sides. On a
 //! software rasteriser the cost of a side follows its outline, block by block, and so does that of the tile pass; they
-//! differ in the time for a block, and the tile pass costs something for every pixel that it looks at.
+//! differ in the time for a block, and the tile pass costs something for every pixel that it looks at. Silhouettes are a
+//! measurement of their own.
+
+mod silhouettes;
 
 use crate::{Caster, Counting, Frame, LightKind, Measures, ShadowLight, Shadows, Target};
 use glam::{DAffine3, DVec3};
@@ -55,11 +58,12 @@ impl CostModel {
         pairs * (self.raster_pair_ns - self.tile_pair_ns) > f64::from(pixels) * self.tile_pixel_ns
     }
 
-    /// Measures `device`: a few frames of 512x512 pixels, some tens of milliseconds on a software device. Keep the result
-    /// as long as the device.
+    /// Measures `device`: a few frames of 512x512 pixels, some hundreds of milliseconds on a software device. Keep the
+    /// result as long as the device.
     #[must_use]
     pub fn calibrate(device: &Device, queue: &Queue) -> Self {
-        measure(device, queue).unwrap_or(Self::RASTERISE)
+        let model = measure(device, queue).unwrap_or(Self::RASTERISE);
+        silhouettes::measure(device, queue, model).unwrap_or(model)
     }
 }
 

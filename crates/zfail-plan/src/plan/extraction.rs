@@ -116,6 +116,11 @@ impl Extracted {
             self.wait = PATIENCE;
         }
     }
+
+    /// Leaves the pair to the planner for a while.
+    pub fn give_up(&mut self) {
+        self.wait = PATIENCE;
+    }
 }
 
 impl Pair {

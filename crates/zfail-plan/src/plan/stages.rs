@@ -154,7 +154,10 @@ impl Planner {
         for (l, pairs) in self.pairs.chunks_mut(placed.len()).enumerate() {
             let Some(layers) = self.layers[l] else { continue };
             if !self.batching[l].has_room_for(layers, frame, l, pairs, placed) {
-                pairs.iter_mut().for_each(|pair| pair.on_device = false);
+                for pair in pairs.iter_mut().filter(|pair| pair.on_device) {
+                    pair.on_device = false;
+                    pair.extracted.give_up();
+                }
                 self.layers[l] = None;
             }
         }
