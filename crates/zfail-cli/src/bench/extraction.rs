@@ -69,8 +69,7 @@ impl Player {
 
     fn play(&mut self, gpu: &Gpu, view: &View, light: DVec3) -> Result<Duration, String> {
         let casters = [Caster { mesh: self.mesh, world_from_object: DAffine3::IDENTITY }];
-        let lights =
-            [ShadowLight { kind: LightKind::Point { position: light, range: f64::INFINITY }, excluded: &[] }];
+        let lights = [ShadowLight { kind: LightKind::Point { position: light, range: f64::INFINITY }, excluded: &[] }];
         let (measures, counting) = (self.measures, Counting::Verdict);
         let frame = Frame { view, casters: &casters, lights: &lights, receivers: &[], measures, counting };
         let (wall, cpu) = (Instant::now(), ProcessTime::now());

@@ -175,7 +175,7 @@ impl Lines {
                 let width = from.1 + by + to.1;
                 let columns = COLUMNS as f64 / TAU;
                 // Neither for infinite drifts nor for what is not a number.
-                (width < 0.999 * PI).then(|| [(from.0 - from.1) * columns, (from.0 + by + to.1) * columns])
+                (width < 0.999 * PI).then_some([(from.0 - from.1) * columns, (from.0 + by + to.1) * columns])
             }
         }
     }

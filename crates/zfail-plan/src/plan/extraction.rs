@@ -57,8 +57,10 @@ pub enum LightCap {
 
 /// Layers that all casters of a light may have on the device; the rest of what a stencil can count is left to others.
 const LAYERS: usize = 160;
-/// Radii of balls that are tried, as parts of the way to the middle of the caster, or of a unit direction.
-const RADII: [f64; 5] = [1.0 / 8.0, 1.0 / 32.0, 1.0 / 128.0, 1.0 / 512.0, 1.0 / 2048.0];
+/// The largest ball that is tried: its radius as a part of the way to the middle of the caster, or of a unit direction.
+const LARGEST: f64 = 1.0 / 8.0;
+/// How many balls are tried, each half as large as the one before.
+const BALLS: i32 = 9;
 /// Moves of the light that a proof has to outlast to be worth its cost.
 const WORTH: u32 = 8;
 /// Moves of the light after which a caster that had to stay with the planner is tried again.
@@ -105,9 +107,10 @@ impl Extracted {
         let to_middle = topology.bounds().center() - light.truncate().as_dvec3();
         let distance = if light.w == 0.0 { 1.0 } else { to_middle.length() };
         // What failed the last time is likely to fail again: at most one step further out.
-        let last = self.proof.take().map_or(f64::INFINITY, |proof| proof.ball.radius * 5.0);
+        let last = self.proof.take().map_or(f64::INFINITY, |proof| proof.ball.radius * 2.5);
         self.cast(topology, mesh, light);
-        self.proof = RADII.iter().map(|part| part * distance).filter(|&radius| radius <= last).find_map(|radius| {
+        let radii = (0..BALLS).map(|halvings| distance * LARGEST * 0.5_f64.powi(halvings));
+        self.proof = radii.filter(|&radius| radius <= last).find_map(|radius| {
             let ball = Ball { center: light, radius };
             let layers = ball.most_layers(topology, &self.castings).filter(|&layers| layers <= most)?;
             Some(Proof { mesh, ball, layers, moves: 0 })
