@@ -181,6 +181,9 @@ fn tiles_give_the_verdicts_of_the_rasteriser() {
     assert!(wrong * 20_000 < all && dark > 10_000, "{wrong} differ of {all}, {dark} pixels darkened by tiles");
 }
 
+/// What is wrongly done without, and how.
+type Mistake = (&'static str, fn(&mut Extraction));
+
 /// Silhouettes from the device give the counts of those from the CPU, bit for bit on every pixel; without the device's
 /// sides or caps they do not.
 #[test]
@@ -216,7 +219,7 @@ fn silhouettes_of_the_device_count_alike() {
     println!("{extracted} extracted, {fans} fans, {caps} dark caps, {exposed} exposed light caps");
     assert!(extracted > 250 && fans > 30 && caps > 60 && exposed > 50, "{extracted} {fans} {caps} {exposed}");
 
-    let faults: [(&str, fn(&mut Extraction)); 3] = [
+    let faults: [Mistake; 3] = [
         ("light caps", |extraction| extraction.light_cap = LightCap::None),
         ("sides and dark caps", |extraction| {
             (extraction.sides, extraction.dark_cap) = (false, DarkCap::None);
