@@ -1,11 +1,14 @@
 //! The command line: what may be asked, with its help text and the checks that need no scene.
 
 use crate::names;
+use crate::numbering::Frames;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use zfail_render::wgpu::Backends;
 use zfail_render::{AovKind, Exposure, Technique};
+use zfail_scene::Limits;
 
 /// Exact stencil shadows of glTF scenes: every shadow boundary to the pixel, without bias and without a shadow map.
 #[derive(Debug, Parser)]
@@ -37,11 +40,12 @@ pub enum Command {
 }
 
 /// `zfail render`
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct Render {
     #[command(flatten)]
     pub scene: SceneArg,
-    /// The picture: .png (tone-mapped, sRGB) or .exr (linear HDR).
+    /// The picture: .png (tone-mapped, sRGB) or .exr (linear HDR). With --frames the name has a place for the frame's
+    /// number: %d, or %04d for at least four digits; %% is a percent sign. The same holds for --aov and --stats.
     #[arg(short, long, value_name = "OUT", value_parser = Picture::parse)]
     pub output: Picture,
     /// Size of the picture in pixels. Its aspect ratio wins over the camera's; the vertical extent is kept.
@@ -52,6 +56,8 @@ pub struct Render {
     pub camera: String,
     #[command(flatten)]
     pub moment: Moment,
+    #[command(flatten)]
+    pub sequence: Sequence,
     /// Let only this light shine; repeat it for several. The ambient light stays, and files keep the numbers that the
     /// lights have in the scene.
     #[arg(long = "light", value_name = "N", value_parser = parse_light)]
@@ -121,6 +127,8 @@ pub struct Bench {
     #[arg(long, conflicts_with_all = ["scenes", "frames", "fps", "size", "samples", "techniques"])]
     pub scaling: bool,
     #[command(flatten)]
+    pub loading: Loading,
+    #[command(flatten)]
     pub device: Device,
     #[command(flatten)]
     pub verbosity: Verbosity,
@@ -145,15 +153,17 @@ pub struct Gallery {
 }
 
 /// The scene that a command works on.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct SceneArg {
     /// A .glb or .gltf file, or builtin:NAME.
     #[arg(value_name = "SCENE")]
     pub scene: String,
+    #[command(flatten)]
+    pub loading: Loading,
 }
 
 /// The moment of an animation.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct Moment {
     /// Show the scene this many seconds after the start of its animation.
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, allow_negative_numbers = true)]
@@ -163,8 +173,107 @@ pub struct Moment {
     pub animation: Option<String>,
 }
 
+/// Frames of an animation, each with files of its own.
+#[derive(Args, Clone, Debug)]
+pub struct Sequence {
+    /// Render the frames from A on up to, and without, B. Frames that are there already are kept if they answer the same
+    /// command line and scene; so a run that was stopped goes on where it was.
+    #[arg(long, value_name = "A..B", value_parser = Frames::parse, conflicts_with = "time", allow_hyphen_values = true)]
+    pub frames: Option<Frames>,
+    /// Frames per second: frame k is the picture of --time k/F.
+    #[arg(long, value_name = "F", default_value = "60", requires = "frames", value_parser = parse_fps)]
+    #[arg(allow_negative_numbers = true)]
+    pub fps: f64,
+}
+
+/// What is made of a scene's file, and what that may cost.
+#[derive(Args, Clone, Debug)]
+pub struct Loading {
+    /// Refuse scenes beyond this; repeat it for several. memory=SIZE is what all data of a scene may take while it is
+    /// loaded, such as 512MiB or 16GiB (8GiB unless given), image-side=PIXELS the width and height of an image (16384).
+    #[arg(long = "limit", value_name = "NAME=VALUE", value_parser = Limit::parse)]
+    limits: Vec<Limit>,
+    /// Shadows of masked surfaces (foliage, fences): off (none), solid (of their whole triangles), or cut=PIXELS (of the
+    /// mask's shape: triangles are cut along the contour of alpha on load, at most PIXELS of the texture's pixels off).
+    #[arg(long, value_name = "off|solid|cut=PIXELS", default_value = "cut=1", value_parser = AlphaShadows::parse)]
+    pub alpha_shadows: AlphaShadows,
+}
+
+impl Loading {
+    /// The limits; of two of a kind the later one holds.
+    pub fn limits(&self) -> Limits {
+        let mut limits = Limits::default();
+        for limit in &self.limits {
+            match *limit {
+                Limit::Memory(bytes) => limits.bytes = bytes,
+                Limit::ImageSide(pixels) => limits.image_side = pixels,
+            }
+        }
+        limits
+    }
+}
+
+/// A bound on what loading a scene may cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Limit {
+    /// Bytes.
+    Memory(u64),
+    /// Pixels.
+    ImageSide(u32),
+}
+
+impl Limit {
+    const NAMES: [&str; 2] = ["memory", "image-side"];
+
+    fn parse(text: &str) -> Result<Self, String> {
+        let Some((name, value)) = text.split_once('=') else {
+            return Err("write it as NAME=VALUE, such as memory=16GiB".to_owned());
+        };
+        match name {
+            "memory" => parse_bytes(value).map(Self::Memory).ok_or("write memory as 512MiB or 16GiB".to_owned()),
+            "image-side" => match value.parse() {
+                Ok(pixels @ 1..) => Ok(Self::ImageSide(pixels)),
+                _ => Err("image-side must be a number of pixels, 1 or more".to_owned()),
+            },
+            _ => {
+                let hint = names::nearest(name, &Self::NAMES).map(|name| format!(" (did you mean '{name}'?)"));
+                let names = Self::NAMES.join(", ");
+                Err(format!("unknown limit '{name}'{}; there are: {names}", hint.unwrap_or_default()))
+            }
+        }
+    }
+}
+
+/// How masked surfaces cast shadows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AlphaShadows {
+    /// Not at all.
+    Off,
+    /// As whole triangles.
+    Solid,
+    /// Cut along the contour of alpha, at most so many texels from it.
+    Cut(f64),
+}
+
+impl AlphaShadows {
+    fn parse(text: &str) -> Result<Self, String> {
+        const TOLERANCES: RangeInclusive<f64> = 0.02..=1000.0;
+        match (text, text.strip_prefix("cut=").map(str::parse)) {
+            ("off", _) => Ok(Self::Off),
+            ("solid", _) => Ok(Self::Solid),
+            (_, Some(Ok(pixels))) if TOLERANCES.contains(&pixels) => Ok(Self::Cut(pixels)),
+            (_, Some(_)) => Err(format!(
+                "PIXELS must be a number from {} to {}, such as cut=1",
+                TOLERANCES.start(),
+                TOLERANCES.end()
+            )),
+            _ => Err("it must be off, solid or cut=PIXELS, such as cut=1".to_owned()),
+        }
+    }
+}
+
 /// Which GPU does the work.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct Device {
     /// Graphics interface.
     #[arg(long, value_name = "NAME")]
@@ -175,7 +284,7 @@ pub struct Device {
 }
 
 /// What is said besides results.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct Verbosity {
     /// No notices and no progress; errors are still reported.
     #[arg(short, long)]
@@ -343,6 +452,14 @@ fn parse_fps(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A number with one of the units B, KiB, MiB, GiB and TiB, or without.
+fn parse_bytes(text: &str) -> Option<u64> {
+    const UNITS: [(&str, u32); 5] = [("KiB", 10), ("MiB", 20), ("GiB", 30), ("TiB", 40), ("B", 0)];
+    let unit = UNITS.iter().find_map(|(unit, shift)| Some((text.strip_suffix(unit)?, *shift)));
+    let (number, shift) = unit.unwrap_or((text, 0));
+    number.trim_end().parse::<u64>().ok()?.checked_mul(1 << shift)
+}
+
 fn parse_light(text: &str) -> Result<usize, String> {
     text.parse().map_err(|_| "it must be the number of a light, counted from 0".to_owned())
 }
@@ -403,11 +520,36 @@ mod tests {
     }
 
     #[test]
+    fn alpha_shadows() {
+        assert_eq!(AlphaShadows::parse("off"), Ok(AlphaShadows::Off));
+        assert_eq!(AlphaShadows::parse("solid"), Ok(AlphaShadows::Solid));
+        assert_eq!(AlphaShadows::parse("cut=0.5"), Ok(AlphaShadows::Cut(0.5)));
+        for wrong in ["", "cut", "cut=", "cut=0", "cut=-1", "cut=nan", "cut=inf", "cut=1px", "on", "Solid"] {
+            assert!(AlphaShadows::parse(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
     fn exposures() {
         assert_eq!(parse_exposure("auto"), Ok(Exposure::Auto));
         assert_eq!(parse_exposure("-1.5"), Ok(Exposure::Ev(-1.5)));
         for wrong in ["", "x", "nan", "inf", "65"] {
             assert!(parse_exposure(wrong).is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn limits() {
+        assert_eq!(Limit::parse("memory=16GiB"), Ok(Limit::Memory(16 << 30)));
+        assert_eq!(Limit::parse("memory=512 MiB"), Ok(Limit::Memory(512 << 20)));
+        assert_eq!(Limit::parse("memory=1000"), Ok(Limit::Memory(1000)));
+        assert_eq!(Limit::parse("image-side=64"), Ok(Limit::ImageSide(64)));
+        for wrong in ["", "memory", "memory=", "memory=-1", "memory=8GB", "memory=99999999TiB", "image-side=0", "x=1"] {
+            assert!(Limit::parse(wrong).is_err(), "{wrong}");
+        }
+        let limits = vec![Limit::Memory(1), Limit::ImageSide(2), Limit::Memory(3)];
+        let loading = Loading { limits, alpha_shadows: AlphaShadows::Solid };
+        let Limits { bytes, image_side, .. } = loading.limits();
+        assert_eq!((bytes, image_side), (3, 2));
     }
 }

@@ -10,7 +10,7 @@ use crate::render;
 use zfail_plan::scene::Scene;
 use zfail_render::{Gpu, Renderer, Settings};
 use zfail_scene::builtin::{self, Entry};
-use zfail_scene::write;
+use zfail_scene::{cut, write};
 
 /// Renders everything, then writes everything.
 ///
@@ -31,7 +31,10 @@ pub fn run(args: &args::Gallery) -> Result<(), Error> {
         let glb = write::to_glb(scene).map_err(|e| Error::failed(format!("{name}: {}", input::chain(&e))))?;
         outputs.add(args.folder.join(format!("{name}.glb")), glb);
         sheet.scene(name, description, scene);
-        for (camera, bytes) in photograph(&gpu, scene, args, &progress)? {
+        // The file keeps its masks.
+        let mut cut = scene.clone();
+        cut::cut_masked(&mut cut, 1.0, cut::Limits::default());
+        for (camera, bytes) in photograph(&gpu, &cut, args, &progress)? {
             let file = picture_name(name, &camera, scene.cameras.len());
             sheet.picture(&file, &camera);
             outputs.add(args.folder.join(file), bytes);
@@ -55,7 +58,7 @@ fn photograph(
     for camera in &scene.cameras {
         let view = camera.view(args.size.0, &bounds);
         let (picture, _) = renderer.picture(&view, &settings).map_err(|e| render::failed(&e))?;
-        pictures.push((camera.name.clone(), render::encode_picture(&picture, Format::Png)?));
+        pictures.push((camera.name.clone(), render::picture_file(&picture, Format::Png)?));
         progress.inc(1);
     }
     Ok(pictures)

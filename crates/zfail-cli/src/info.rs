@@ -1,5 +1,9 @@
 //! `zfail info`: what is in a scene, and how each mesh will cast.
+//!
+//! Data flow: `report` and `mesh` (the facts) -> `text` on a `page`, or JSON.
 
+mod mesh;
+mod page;
 mod report;
 mod text;
 
@@ -14,13 +18,13 @@ use report::Report;
 /// # Errors
 /// If the scene cannot be loaded or standard output cannot be written.
 pub fn run(args: &args::Info) -> Result<(), Error> {
-    let (animated, file) = input::read(&args.scene.scene)?;
+    let (animated, file) = input::read(&args.scene.scene, &args.scene.loading)?;
     let report = Report::new(&animated, file)?;
     if args.json {
         let json = serde_json::to_string_pretty(&report)
             .map_err(|e| Error::failed(format!("cannot encode the report: {e}")))?;
         console::print(&format!("{json}\n"))
     } else {
-        console::print(&report.to_string())
+        console::print(&text::text(&report))
     }
 }

@@ -1,26 +1,44 @@
 //! The scene that a command works on, and the camera, lights and GPU that it asks for.
 
-use crate::args::{Device, Moment};
+use crate::args::{AlphaShadows, Device, Loading, Moment};
 use crate::error::Error;
 use crate::names;
 use std::path::Path;
-use zfail_plan::scene::{Camera, Scene};
+use zfail_plan::scene::{MaskCasting, Scene};
 use zfail_render::{Gpu, GpuOptions};
-use zfail_scene::{Animated, FileInfo, Limits, builtin};
+use zfail_scene::{Animated, FileInfo, Limits, builtin, cut};
 
 const BUILTIN: &str = "builtin:";
 
-/// Loads a file as it is, with its animations and what it says about itself, or generates a built-in scene.
+/// Loads a file as it is, with its animations and what it says about itself, or generates a built-in scene; masked
+/// surfaces get the shadows that `masks` asks for.
 ///
 /// # Errors
 /// If the file cannot be used, or there is no such built-in scene.
-pub fn read(scene: &str) -> Result<(Animated, Option<FileInfo>), Error> {
+pub fn read(scene: &str, loading: &Loading) -> Result<(Animated, Option<FileInfo>), Error> {
+    let (mut animated, file) = open(scene, &loading.limits())?;
+    shape_shadows(&mut animated, loading.alpha_shadows);
+    Ok((animated, file))
+}
+
+/// Prepares masked surfaces for the shadows that they are to cast.
+pub fn shape_shadows(animated: &mut Animated, masks: AlphaShadows) {
+    match masks {
+        AlphaShadows::Off => animated.scene.mask_casting = MaskCasting::Off,
+        AlphaShadows::Solid => animated.scene.mask_casting = MaskCasting::Solid,
+        AlphaShadows::Cut(texels) => {
+            animated.cut_masked(texels, cut::Limits::default());
+        }
+    }
+}
+
+fn open(scene: &str, limits: &Limits) -> Result<(Animated, Option<FileInfo>), Error> {
     if let Some(name) = scene.strip_prefix(BUILTIN) {
         let scene = builtin::animated(name).ok_or_else(|| names::unknown("built-in scene", name, &builtin_names()))?;
         return Ok((scene, None));
     }
     let path = Path::new(scene);
-    match zfail_scene::load_animated(path, &Limits::default()) {
+    match zfail_scene::load_animated(path, limits) {
         Ok((scene, info)) => Ok((scene, Some(info))),
         Err(e) if !path.exists() && builtin_names().contains(&scene) => {
             Err(Error::failed(format!("{}; the built-in scene of that name is '{BUILTIN}{scene}'", chain(&e))))
@@ -33,8 +51,8 @@ pub fn read(scene: &str) -> Result<(Animated, Option<FileInfo>), Error> {
 ///
 /// # Errors
 /// As [`read`].
-pub fn complete(scene: &str) -> Result<Animated, Error> {
-    let (mut animated, file) = read(scene)?;
+pub fn complete(scene: &str, loading: &Loading) -> Result<Animated, Error> {
+    let (mut animated, file) = read(scene, loading)?;
     if file.is_some() {
         zfail_scene::complete(&mut animated.scene);
     }
@@ -47,14 +65,10 @@ pub fn complete(scene: &str) -> Result<Animated, Error> {
 /// # Errors
 /// If there is no such animation.
 pub fn at_moment(animated: Animated, moment: &Moment) -> Result<Scene, Error> {
-    let animation = match (&moment.animation, moment.time) {
-        (None, None) => return Ok(animated.scene),
-        (Some(wanted), _) => {
-            let names: Vec<&str> = animated.animations.iter().map(|animation| animation.name.as_str()).collect();
-            names::index_of("animation", wanted, &names)?
-        }
-        (None, Some(_)) => 0,
-    };
+    if moment.animation.is_none() && moment.time.is_none() {
+        return Ok(animated.scene);
+    }
+    let animation = animation(&animated, moment)?;
     let pose = animated.pose(animation, moment.time.unwrap_or(0.0));
     let mut scene = animated.scene;
     if animated.animations.is_empty() {
@@ -64,18 +78,28 @@ pub fn at_moment(animated: Animated, moment: &Moment) -> Result<Scene, Error> {
     Ok(scene)
 }
 
+/// Index of the animation that `--animation` numbers or names, or 0, which may not exist.
+///
+/// # Errors
+/// If there is no animation as named.
+pub fn animation(animated: &Animated, moment: &Moment) -> Result<usize, Error> {
+    let Some(wanted) = &moment.animation else { return Ok(0) };
+    let names: Vec<&str> = animated.animations.iter().map(|animation| animation.name.as_str()).collect();
+    names::index_of("animation", wanted, &names)
+}
+
 /// Names of the built-in scenes.
 pub fn builtin_names() -> Vec<&'static str> {
     builtin::SCENES.iter().map(|entry| entry.name).collect()
 }
 
-/// The camera that `wanted` numbers or names.
+/// Index of the camera that `wanted` numbers or names.
 ///
 /// # Errors
 /// If there is none.
-pub fn camera<'a>(scene: &'a Scene, wanted: &str) -> Result<&'a Camera, Error> {
+pub fn camera(scene: &Scene, wanted: &str) -> Result<usize, Error> {
     let names: Vec<&str> = scene.cameras.iter().map(|camera| camera.name.as_str()).collect();
-    Ok(&scene.cameras[names::index_of("camera", wanted, &names)?])
+    names::index_of("camera", wanted, &names)
 }
 
 /// The lights that shine, in ascending order: all of them, or those in `wanted`.

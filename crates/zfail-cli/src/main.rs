@@ -14,6 +14,7 @@ mod info;
 mod input;
 mod mesa;
 mod names;
+mod numbering;
 mod output;
 mod render;
 

@@ -2,10 +2,11 @@
 //!
 //! In: finished bytes and where they go. Out: files in place, or an error and nothing changed. Until [`Outputs::commit`]
 //! everything stays in memory; then every file is written beside its destination, and only when all of them are safely
-//! on the disk are they renamed into place.
+//! on the disk are they renamed into place, in the order in which they were added. What a killed run leaves behind under
+//! temporary names, [`sweep`] removes.
 
 use crate::error::Error;
-use std::fs;
+use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
@@ -91,7 +92,7 @@ fn destination(path: &Path) -> Result<PathBuf, Error> {
 }
 
 /// The folder that holds `path`.
-fn folder_of(path: &Path) -> &Path {
+pub fn folder_of(path: &Path) -> &Path {
     or_here(path.parent().unwrap_or(Path::new("")))
 }
 
@@ -115,13 +116,36 @@ fn write_beside(folder: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
     Ok(file)
 }
 
-/// A temporary file that will have an ordinary file's permissions once it is renamed.
+/// Names of temporary files.
+const TEMPORARY: (&str, &str) = (".zfail-", ".part");
+
+/// A temporary file that will have an ordinary file's permissions once it is renamed. It is locked as long as it is in use,
+/// by which [`sweep`] knows it from one that is forgotten.
 fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".zfail-");
+    builder.prefix(TEMPORARY.0).suffix(TEMPORARY.1);
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(folder)
+    let file = builder.tempfile_in(folder)?;
+    // Where a file system has no locks, nothing is swept either.
+    let _ = file.as_file().try_lock();
+    Ok(file)
+}
+
+/// Removes the temporary files of killed runs from `folder`. Those of a run that still lives stay, and so does what
+/// cannot be removed, for it does no harm.
+pub fn sweep(folder: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        if name.starts_with(TEMPORARY.0)
+            && name.ends_with(TEMPORARY.1)
+            && entry.file_type().is_ok_and(|kind| kind.is_file())
+            && File::open(entry.path()).is_ok_and(|file| file.try_lock().is_ok())
+        {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
 }
 
 fn cannot_write(path: &Path, error: &io::Error) -> Error {
@@ -166,7 +190,7 @@ impl Drop for NewFolders {
 
 #[cfg(test)]
 mod tests {
-    use super::{Outputs, check_file, check_folder};
+    use super::{Outputs, check_file, check_folder, sweep, temporary};
     use std::fs;
 
     #[test]
@@ -227,6 +251,20 @@ mod tests {
         fs::set_permissions(&file, permissions).unwrap();
         assert!(check_file(&file).is_err(), "a read-only file");
         assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1, "checks leave nothing behind");
+    }
+
+    #[test]
+    fn forgotten_temporary_files_are_swept() {
+        let dir = tempfile::tempdir().unwrap();
+        let (_, forgotten) = temporary(dir.path()).unwrap().keep().unwrap();
+        let in_use = temporary(dir.path()).unwrap();
+        fs::write(dir.path().join(".zfail-notes"), "").unwrap();
+        fs::write(dir.path().join("a.part"), "").unwrap();
+        sweep(dir.path());
+        assert!(!forgotten.exists());
+        assert!(in_use.path().exists(), "another run is at work on it");
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 3, "files of other names stay");
+        sweep(&dir.path().join("missing"));
     }
 
     #[cfg(unix)]

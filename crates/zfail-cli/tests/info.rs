@@ -24,11 +24,22 @@ fn json_states_the_facts_of_the_small_scene() {
     assert_eq!(kinds, ["directional", "point", "spot"]);
     let cameras: Vec<_> = report["cameras"].as_array().unwrap().iter().map(|camera| camera["name"].clone()).collect();
     assert_eq!(cameras, ["above", "aside"]);
+    let channels = serde_json::json!({ "nodes": 1, "joints": 0, "weights": 0, "other": 0 });
     let animations = serde_json::json!([
-        { "name": "glide", "duration": 2.0, "moves": true },
-        { "name": "sunset", "duration": 2.0, "moves": true },
+        { "name": "glide", "duration": 2.0, "moves": true, "channels": channels },
+        { "name": "sunset", "duration": 2.0, "moves": true, "channels": channels },
     ]);
     assert_eq!(report["animations"], animations);
+    let surfaces = serde_json::json!([{ "material": 0, "alpha": "opaque", "casts": true, "triangles": 4 }]);
+    assert_eq!(mesh["surfaces"], surfaces);
+    let extensions = serde_json::json!([{ "name": "KHR_lights_punctual", "required": false, "treatment": "read" }]);
+    assert_eq!(report["extensions"], extensions);
+    assert_eq!(report["file"]["version"], "2.0");
+    let light = &report["lights"][2];
+    assert_eq!(
+        (&light["falloff"], &light["cookie"], &light["box"]),
+        (&serde_json::json!([]), &Value::Null, &Value::Null)
+    );
 }
 
 #[test]
@@ -38,12 +49,14 @@ fn text_names_everything_that_can_be_chosen() {
     let text = zfail(folder.path(), &["info", "small.gltf"]).ok().stdout;
     for line in [
         "scene 'small': 4 triangles in 1 instance\n",
-        "    0  'squares': 4 triangles, 8 vertices (8 distinct points), 0 % closed; 8 boundary, 0 non-manifold",
-        "       casts double: 4 triangles in 2 parts",
-        "    1  'lamp': point at (1.5 3 0), 40 cd, colour (1 1 1)",
-        "    1  'aside': perspective at (0 2 8) towards (0 0 -1), 51.6 degrees high",
-        "animations: 2\n    0  'glide': 2.000 s\n    1  'sunset': 2.000 s\n",
-        "materials: 1 (1 opaque, 0 mask, 0 blend)",
+        "extensions: 1\n  0 KHR_lights_punctual: read\n",
+        "  0 'squares': 4 triangles, 8 vertices (8 after welding), 0 % closed\n",
+        "      edges: 8 boundary, 0 non-manifold, 0 inconsistently wound\n",
+        "      casts double: 4 triangles in 2 parts (it has a border, a fin or\n        inconsistent winding)\n",
+        "  1 'lamp': point at (1.5 3 0), 40 cd, colour (1 1 1)\n",
+        "  1 'aside': perspective at (0 2 8) towards (0 0 -1), 51.6 degrees high\n",
+        "animations: 2\n  0 'glide': 2.000 s, 1 channel of nodes\n  1 'sunset': 2.000 s, 1 channel of nodes\n",
+        "materials: 1 (1 opaque, 0 mask, 0 blend)\n  0 'paper': opaque, double-sided\n",
     ] {
         assert!(text.contains(line), "'{line}' is not in:\n{text}");
     }
@@ -62,5 +75,46 @@ fn every_built_in_scene_can_be_described() {
         assert!(report["triangles"].as_u64().unwrap() > 0, "{name}");
         assert!(!report["lights"].as_array().unwrap().is_empty(), "{name}");
         assert!(!report["cameras"].as_array().unwrap().is_empty(), "{name}");
+        let text = zfail(folder.path(), &["info", &scene]).ok().stdout;
+        assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+        assert!(text.lines().count() < 150, "{text}");
     }
+}
+
+#[test]
+fn lights_have_their_shapes() {
+    let folder = tempfile::tempdir().unwrap();
+    let json = zfail(folder.path(), &["info", "--json", "builtin:lantern"]).ok().stdout;
+    let report: Value = serde_json::from_str(&json).unwrap();
+    let lights = report["lights"].as_array().unwrap();
+    let with = |has: fn(&Value) -> bool| lights.iter().filter(|light| has(light)).count();
+    assert!(with(|light| light["falloff"].as_array().unwrap().len() > 1) > 0);
+    assert!(with(|light| light["cookie"].is_u64()) > 0);
+    assert!(with(|light| light["box"].as_array().is_some_and(|half| half.len() == 3)) > 0);
+    let text = zfail(folder.path(), &["info", "builtin:lantern"]).ok().stdout;
+    for words in ["falloff by", "cookie texture", ", box ("] {
+        assert!(text.split_whitespace().collect::<Vec<_>>().join(" ").contains(words), "'{words}' is not in:\n{text}");
+    }
+}
+
+#[test]
+fn skins_morphs_and_extensions_of_a_file_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = small_scene(folder.path());
+    let mut gltf: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    gltf["skins"] = serde_json::json!([{ "joints": [1, 2] }]);
+    gltf["meshes"][0]["primitives"][0]["targets"] = serde_json::json!([{ "NORMAL": 1 }, { "NORMAL": 1 }]);
+    gltf["extensionsUsed"] = serde_json::json!(["KHR_lights_punctual", "KHR_materials_anisotropy"]);
+    std::fs::write(&path, gltf.to_string()).unwrap();
+    let report: Value =
+        serde_json::from_str(&zfail(folder.path(), &["info", "small.gltf", "--json"]).ok().stdout).unwrap();
+    assert_eq!(report["file"]["skins"], serde_json::json!([{ "joints": 2 }]));
+    assert_eq!(report["file"]["morphs"], serde_json::json!([{ "mesh": "squares", "targets": 2 }]));
+    // The camera that glides is a joint now, and the sun is not.
+    assert_eq!(report["animations"][0]["channels"]["joints"], 1);
+    assert_eq!(report["animations"][1]["channels"]["nodes"], 1);
+    let treatment = report["extensions"][1]["treatment"].as_str().unwrap();
+    assert!(treatment != "read" && treatment.starts_with(char::is_lowercase), "{treatment}");
+    let text = zfail(folder.path(), &["info", "small.gltf"]).ok().stdout;
+    assert!(text.contains("1 skin with 2 joints\n1 mesh with 2 morph targets\n"), "{text}");
 }

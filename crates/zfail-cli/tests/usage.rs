@@ -42,6 +42,22 @@ fn wrong_usage_is_one_line_and_exit_code_2() {
         (&["render", "small.gltf", "-o", "a.exr", "--aov", "depth=./a.exr"], &["a.exr", "two results"]),
         (&["render", "small.gltf", "-o", "a.png", "--aov", "shadow=m", "--aov", "stencil=m"], &["'m'", "two results"]),
         (&["render", "builtin:nowhere", "-o", "a.png"], &["built-in scene 'nowhere'", "there are: "]),
+        (&["render", "small.gltf", "-o", "a-%d.png"], &["a-%d.png", "--frames A..B"]),
+        (&["render", "small.gltf", "-o", "a.png", "--frames", "0..3"], &["'a.png'", "%04d"]),
+        (&["render", "small.gltf", "-o", "%d.png", "--frames", "0..3", "--stats", "s.json"], &["'s.json'", "%04d"]),
+        (&["render", "small.gltf", "-o", "%x.png", "--frames", "0..3"], &["after %"]),
+        (&["render", "small.gltf", "-o", "%d.png", "--frames", "3..3"], &["no frame"]),
+        (&["render", "small.gltf", "-o", "%d.png", "--frames", "-1..3"], &["A..B"]),
+        (&["render", "small.gltf", "-o", "%d.png", "--frames", "0..3", "--time", "1"], &["--frames", "--time"]),
+        (&["render", "small.gltf", "-o", "%d.png", "--frames", "0..3", "--fps", "-1"], &["frames per second"]),
+        (&["render", "small.gltf", "-o", "a.png", "--fps", "25"], &["--frames"]),
+        (
+            &["render", "small.gltf", "-o", "%d.png", "--aov", "albedo=%02d.png", "--frames", "9..12"],
+            &["'10.png'", "two results"],
+        ),
+        (&["render", "small.gltf", "-o", "a.png", "--limit", "memory"], &["NAME=VALUE"]),
+        (&["info", "small.gltf", "--limit", "memry=1GiB"], &["did you mean 'memory'", "image-side"]),
+        (&["bench", "small.gltf", "--limit", "image-side=0"], &["number of pixels"]),
         (&["info"], &["SCENE"]),
         (&["info", "small.gltf", "other.gltf"], &["other.gltf"]),
         (&["info", "builtin:"], &["there are: "]),
@@ -76,6 +92,18 @@ fn scenes_that_cannot_be_read_are_one_line_and_exit_code_1() {
         zfail(folder.path(), &["info", "--json", scene]).fails(1, &[scene]);
     }
     assert_eq!(files(folder.path()), before);
+}
+
+#[test]
+fn limits_are_for_every_command_that_loads_a_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    small_scene(folder.path());
+    for command in [&["render", "small.gltf", "-o", "a.png"][..], &["info", "small.gltf"], &["bench", "small.gltf"]] {
+        let run = zfail(folder.path(), &[command, &["--limit", "memory=1KiB"]].concat());
+        run.fails(1, &["small.gltf", "the file", "0 MiB"]);
+    }
+    // The negative control: with the limit raised again the scene loads.
+    zfail(folder.path(), &["info", "small.gltf", "--limit", "memory=1KiB", "--limit", "memory=1MiB"]).ok();
 }
 
 #[cfg(unix)]
@@ -134,11 +162,14 @@ fn help_lists_every_option_of_the_contract() {
     assert_eq!(
         named,
         [
+            "--limit <NAME=VALUE>",
             "-o, --output <OUT>",
             "--size <WxH>",
             "--camera <N|NAME>",
             "--time <SECONDS>",
             "--animation <NAME|N>",
+            "--frames <A..B>",
+            "--fps <F>",
             "--light <N>",
             "--samples <1|4>",
             "--technique <NAME>",

@@ -112,8 +112,7 @@ pub fn truths_with(scene: &Scene, view: &View, guards: Guards) -> Result<Vec<Tru
 fn casts(scene: &Scene, light: usize) -> Result<CastTable, BenchError> {
     let mut castings: Vec<(Topology, Vec<Casting>)> = Vec::new();
     for instance in &scene.instances {
-        let mesh = &scene.meshes[instance.mesh];
-        let topology = Topology::new(&mesh.positions, &mesh.triangles, |t| scene.triangle_casts(instance.mesh, t))?;
+        let topology = Topology::of(scene, instance.mesh)?;
         let object_from_world = instance.world_from_object.inverse();
         let object_light = match scene.lights[light].kind {
             LightKind::Point { position, .. } | LightKind::Spot { position, .. } => {

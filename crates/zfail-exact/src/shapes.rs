@@ -277,6 +277,7 @@ impl Builder {
             colors: vec![[1.0; 4]; count],
             primitives: vec![Primitive { triangles: 0..self.triangles.len() as u32, material }],
             triangles: self.triangles,
+            alike: Vec::new(),
         }
     }
 }

@@ -1,5 +1,5 @@
 //! Real models and the built-in scenes: no pixel may be wrong, with a light inside the model's bounds, one outside and
-//! a sun, whatever lights the file has of its own.
+//! a sun, whatever lights the file has of its own. Animated models are checked at rest and at two moments.
 //!
 //! Models are looked for in `ZFAIL_ASSETS`, or in `shared/assets` beside the checkout, and skipped where absent.
 //! `ZFAIL_SIZE=WxH` sets the size of the images, `ZFAIL_MODEL` limits the test to one file, `ZFAIL_FILES` (a list like
@@ -10,10 +10,10 @@ use std::{env, path::PathBuf};
 use zfail_exact::bench::{self, Images};
 use zfail_exact::tally::Tally;
 use zfail_plan::glam::DVec3;
-use zfail_plan::scene::{Light, LightKind, LightShape, Scene};
+use zfail_plan::scene::{Light, LightKind, LightShape, Mesh, Scene};
 use zfail_render::{Gpu, GpuOptions, Settings, Technique, Tiles};
+use zfail_scene::Limits;
 
-/// Files without compression, skinned ones in rest pose.
 const MODELS: [&str; 20] = [
     "godot-room/godot-room.glb",
     "garage/garage.glb",
@@ -106,11 +106,20 @@ fn no_pixel_of_a_real_model_is_wrong() {
             println!("skipped: {model} is not there");
             continue;
         }
-        let mut scene = zfail_scene::load(&path).unwrap_or_else(|e| panic!("{e}"));
+        let (animated, _) = zfail_scene::load_animated(&path, &Limits::default()).unwrap_or_else(|e| panic!("{e}"));
+        let mut scene = animated.scene.clone();
         zfail_scene::complete(&mut scene);
         let test = test_lights(&scene);
         scene.lights.extend(test);
-        judge(&gpu, model.split('/').next().unwrap_or(model), &scene, 0, &mut masks, &mut failures);
+        let name = model.split('/').next().unwrap_or(model);
+        judge(&gpu, name, &scene, 0, &mut masks, &mut failures);
+        for (i, animation) in animated.animations.iter().enumerate().take(1) {
+            for share in [0.37, 0.71] {
+                let seconds = share * animation.duration;
+                scene.set_pose(&animated.pose(i, seconds));
+                judge(&gpu, &format!("{name} at {seconds:.2} s"), &scene, 0, &mut masks, &mut failures);
+            }
+        }
     }
     println!("all                  {masks}");
     assert!(failures.is_empty(), "{}", failures.join("\n"));
@@ -122,9 +131,8 @@ fn no_pixel_of_other_files_is_wrong() {
     let gpu = Gpu::new(&GpuOptions::default()).expect("a graphics adapter");
     let (mut masks, mut failures) = (Tally::default(), Vec::new());
     for path in env::split_paths(&files) {
-        let animated = zfail_scene::load_animated(&path, &zfail_scene::Limits::default())
-            .map(|(a, _)| a)
-            .unwrap_or_else(|e| panic!("{e}"));
+        let animated =
+            zfail_scene::load_animated(&path, &Limits::default()).map(|(a, _)| a).unwrap_or_else(|e| panic!("{e}"));
         let mut scene = animated.scene.clone();
         zfail_scene::complete(&mut scene);
         let name = path.file_stem().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
@@ -144,9 +152,16 @@ fn no_pixel_of_a_built_in_scene_is_wrong() {
     let only = env::var("ZFAIL_MODEL").unwrap_or_default();
     let (mut masks, mut failures) = (Tally::default(), Vec::new());
     for entry in zfail_scene::builtin::SCENES.iter().filter(|e| e.name.contains(&only)) {
-        let scene = zfail_scene::builtin::scene(entry.name).expect("a name from the list");
+        let animated = zfail_scene::builtin::animated(entry.name).expect("a name from the list");
+        let mut scene = animated.scene.clone();
         for camera in 0..scene.cameras.len() {
             judge(&gpu, entry.name, &scene, camera, &mut masks, &mut failures);
+        }
+        if scene.meshes.iter().any(Mesh::bends) {
+            for seconds in [0.9, 2.7] {
+                scene.set_pose(&animated.pose(0, seconds));
+                judge(&gpu, &format!("{} at {seconds} s", entry.name), &scene, 0, &mut masks, &mut failures);
+            }
         }
     }
     println!("all                  {masks}");

@@ -85,7 +85,7 @@ impl Soup {
                     index: t as u32,
                     masked: matches!(alpha, AlphaMode::Mask(_)),
                     double_sided: material.is_some_and(|m| m.double_sided),
-                    casts: instance.casts_shadow,
+                    casts: instance.casts_shadow && material.is_none_or(|_| scene.triangle_casts(instance.mesh, t)),
                 });
             }
         }

@@ -150,3 +150,52 @@ fn bad_input_is_named() {
 fn an_empty_mesh_is_no_error() {
     assert!(topology(&(Vec::new(), Vec::new())).parts.is_empty());
 }
+
+/// A tetrahedron with every corner of every triangle a vertex of its own, and which of them are alike.
+fn loose_tetrahedron() -> (Soup, Vec<u32>) {
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let alike: Vec<u32> = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]].concat();
+    let positions = alike.iter().map(|&v| corners[v as usize]).collect();
+    ((positions, (0..4).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect()), alike)
+}
+
+#[test]
+fn a_mesh_that_bends_keeps_its_incidence() {
+    let ((mut positions, triangles), alike) = loose_tetrahedron();
+    let mut t = Topology::bending(&positions, &triangles, &alike, |_| true).expect("valid mesh");
+    assert_eq!((t.positions.len(), t.edge_counts()), (4, [0, 6, 0]));
+    assert_eq!(t.parts[0].shape, Shape::Bending, "nothing is proved of other poses");
+    // Two corners meet: in a rigid mesh they would become one.
+    for (p, _) in positions.iter_mut().zip(&alike).filter(|(_, v)| **v == 3) {
+        *p = [1.0, 0.0, -0.0];
+    }
+    assert_eq!(t.move_vertices(&positions), Ok(true));
+    assert_eq!(t.move_vertices(&positions), Ok(false), "it is there already");
+    assert_eq!((t.positions.len(), t.edge_counts()), (4, [0, 6, 0]));
+    assert_eq!(t.bounds().max, [1.0, 1.0, 0.0].into());
+    assert_eq!(t.parts[0].bounds.max, t.bounds().max);
+    let rigid = topology(&(positions, triangles));
+    assert_eq!(rigid.positions.len(), 3);
+}
+
+#[test]
+fn vertices_that_only_meet_are_not_welded_in_a_mesh_that_bends() {
+    let ((positions, triangles), mut alike) = loose_tetrahedron();
+    alike[0] = 9;
+    let t = Topology::bending(&positions, &triangles, &alike, |_| true).expect("valid mesh");
+    assert_eq!((t.positions.len(), t.parts[0].shape), (5, Shape::Open));
+}
+
+#[test]
+fn faulty_moves_are_refused_and_change_nothing() {
+    let ((positions, triangles), alike) = loose_tetrahedron();
+    assert!(Topology::bending(&positions, &triangles, &alike[1..], |_| true).is_err());
+    let mut t = Topology::bending(&positions, &triangles, &alike, |_| true).expect("valid mesh");
+    let mut broken = positions.clone();
+    broken[5][1] = f32::NAN;
+    assert_eq!(t.move_vertices(&broken), Err(TopologyError::NotFinite { vertex: 5 }));
+    assert!(matches!(t.move_vertices(&positions[1..]), Err(TopologyError::WrongLength { vertices: 12, found: 11 })));
+    assert_eq!(t.move_vertices(&positions), Ok(false));
+    let mut rigid = topology(&(positions.clone(), triangles));
+    assert_eq!(rigid.move_vertices(&positions), Err(TopologyError::Rigid));
+}

@@ -33,6 +33,9 @@ pub fn scene(scene: &Scene) -> Result<(), RenderError> {
         if let Some(v) = mesh.triangles.iter().flatten().find(|&&v| v as usize >= mesh.positions.len()) {
             return fail(format!("mesh {i} refers to vertex {v} of {}", mesh.positions.len()));
         }
+        if mesh.bends() && mesh.alike.len() != mesh.positions.len() {
+            return fail(format!("mesh {i} has {} vertices, {} of which bend", mesh.positions.len(), mesh.alike.len()));
+        }
         if mesh.triangles.len() > u32::MAX as usize / 3 {
             return fail(format!("mesh {i} has {} triangles, too many for 32-bit indices", mesh.triangles.len()));
         }
@@ -71,8 +74,14 @@ pub fn scene(scene: &Scene) -> Result<(), RenderError> {
     Ok(())
 }
 
-/// Checks that `pose` fits a scene of so many instances and lights.
-pub fn pose(pose: &Pose, instances: usize, lights: usize) -> Result<(), RenderError> {
+/// Checks that `pose` fits a scene of so many instances and lights, and of meshes that bend with so many vertices (`None`
+/// for those that do not).
+pub fn pose(
+    pose: &Pose,
+    instances: usize,
+    lights: usize,
+    bending: impl Fn(usize) -> Option<usize>,
+) -> Result<(), RenderError> {
     let fail = |message: String| Err(RenderError::Scene(message));
     for (what, posed, count) in [("instances", pose.instances.len(), instances), ("lights", pose.lights.len(), lights)]
     {
@@ -88,6 +97,18 @@ pub fn pose(pose: &Pose, instances: usize, lights: usize) -> Result<(), RenderEr
     }
     if let Some(l) = pose.light_axes.iter().position(|axes| !axes.is_finite()) {
         return fail(format!("a pose gives light {l} axes that are not finite"));
+    }
+    for bent in &pose.bent {
+        let (m, found) = (bent.mesh, bent.positions.len());
+        let Some(vertices) = bending(m) else {
+            return fail(format!("a pose bends mesh {m}, which does not exist or is rigid"));
+        };
+        if found != vertices || bent.normals.len() > vertices || bent.tangents.len() > vertices {
+            return fail(format!("a pose bends {found} vertices of mesh {m}, which has {vertices}"));
+        }
+        if let Some(v) = bent.positions.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
+            return fail(format!("a pose gives vertex {v} of mesh {m} a place that is not finite"));
+        }
     }
     Ok(())
 }

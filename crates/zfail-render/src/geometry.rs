@@ -2,7 +2,7 @@
 
 use crate::gpu_data::InstanceRecord;
 use crate::{Gpu, RenderError};
-use zfail_plan::scene::Mesh;
+use zfail_plan::scene::{BentMesh, Mesh};
 
 /// A mesh on the device.
 #[derive(Debug)]
@@ -102,6 +102,13 @@ impl MeshBuffers {
             tangents: vertices(bytemuck::cast_slice(&tangents))?,
             indices: upload(gpu, &mesh.name, wgpu::BufferUsages::INDEX, bytemuck::cast_slice(&mesh.triangles))?,
         })
+    }
+
+    /// Replaces what bends.
+    pub fn bend(&self, gpu: &Gpu, bent: &BentMesh) {
+        gpu.queue.write_buffer(&self.positions, 0, bytemuck::cast_slice(&bent.positions));
+        gpu.queue.write_buffer(&self.normals, 0, bytemuck::cast_slice(&bent.normals));
+        gpu.queue.write_buffer(&self.tangents, 0, bytemuck::cast_slice(&bent.tangents));
     }
 
     /// Binds what `vertices` reads, placed by `instances`.

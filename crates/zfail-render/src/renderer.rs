@@ -85,13 +85,14 @@ impl<'g> Renderer<'g> {
         })
     }
 
-    /// Moves the scene's instances and lights; meshes, materials and everything derived from them stay on the device.
-    /// Cameras are the caller's business: every frame is given its own [`View`].
+    /// Moves the scene's instances and lights, and the vertices of meshes that bend; all else that was made of meshes and
+    /// materials stays on the device. Cameras are the caller's business: every frame is given its own [`View`].
     ///
     /// # Errors
-    /// If the pose has another number of instances or lights than the scene, or is not finite. The old pose stays then.
+    /// If the pose has another number of instances, lights or vertices than the scene, or is not finite. The old pose stays
+    /// then.
     pub fn set_pose(&mut self, pose: &Pose) -> Result<(), RenderError> {
-        self.scene.pose(pose)
+        self.scene.pose(self.gpu, pose)
     }
 
     /// Renders one picture and reads it back.

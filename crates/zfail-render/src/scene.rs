@@ -5,8 +5,10 @@ use crate::geometry::MeshBuffers;
 use crate::layouts::Layouts;
 use crate::shapes::Shapes;
 use crate::{Gpu, RenderError, Settings, check, materials};
-use zfail::{Caster, Counting, Frame, LightStats, ShadowLight, Shadows, Tiles};
+use glam::DVec3;
+use zfail::{Caster, Counting, Frame, LightStats, MeshId, ShadowLight, Shadows, Tiles};
 use zfail_plan::scene::{Bounds, Instance, Light, LightKind, Material, Mesh, Pose, Scene};
+use zfail_plan::topology::Topology;
 use zfail_plan::view::View;
 
 /// Uploaded meshes and materials, registered casters, and the plain data that frames are made from.
@@ -33,6 +35,10 @@ pub struct SceneOnGpu {
     pub roughness: f64,
     pub shadows: Shadows,
     casters: Vec<Caster>,
+    /// By mesh, those of which an instance casts.
+    caster_meshes: Vec<Option<MeshId>>,
+    /// By mesh, how many vertices bend.
+    bending: Vec<Option<usize>>,
     /// By instance.
     caster_of: Vec<Option<usize>>,
 }
@@ -50,12 +56,12 @@ impl SceneOnGpu {
                 continue;
             }
             meshes.push(Some(MeshBuffers::new(gpu, mesh)?));
-            let surface = |t| scene.triangle_surface(m, t);
             let casts = |t| scene.triangle_casts(m, t);
             let casting =
                 scene.instances.iter().any(|i| i.mesh == m && i.casts_shadow) && (0..mesh.triangles.len()).any(casts);
             ids.push(if casting {
-                Some(shadows.add_mesh(&gpu.device, &gpu.queue, &mesh.positions, &mesh.triangles, surface)?)
+                let topology = Topology::of(scene, m).map_err(zfail::Error::from)?;
+                Some(shadows.add_topology(&gpu.device, &gpu.queue, topology)?)
             } else {
                 None
             });
@@ -88,6 +94,8 @@ impl SceneOnGpu {
             roughness: scene.materials.iter().map(least_roughness).fold(1.0, f64::min),
             shadows,
             casters,
+            caster_meshes: ids,
+            bending: scene.meshes.iter().map(|mesh| mesh.bends().then_some(mesh.positions.len())).collect(),
             caster_of,
         };
         on_gpu.bound();
@@ -95,9 +103,19 @@ impl SceneOnGpu {
         Ok(on_gpu)
     }
 
-    /// Moves instances and lights in place.
-    pub fn pose(&mut self, pose: &Pose) -> Result<(), RenderError> {
-        check::pose(pose, self.instances.len(), self.lights.len())?;
+    /// Moves instances, lights and the vertices of meshes that bend in place.
+    pub fn pose(&mut self, gpu: &Gpu, pose: &Pose) -> Result<(), RenderError> {
+        let bending = |mesh: usize| self.bending.get(mesh).copied().flatten();
+        check::pose(pose, self.instances.len(), self.lights.len(), bending)?;
+        for bent in &pose.bent {
+            if let Some(buffers) = &self.meshes[bent.mesh] {
+                buffers.bend(gpu, bent);
+            }
+            if let Some(caster) = self.caster_meshes[bent.mesh] {
+                self.shadows.move_vertices(&gpu.queue, caster, &bent.positions)?;
+            }
+            self.mesh_bounds[bent.mesh] = Bounds::of(bent.positions.iter().map(|p| DVec3::from(p.map(f64::from))));
+        }
         for (instance, &world_from_object) in self.instances.iter_mut().zip(&pose.instances) {
             instance.world_from_object = world_from_object;
         }

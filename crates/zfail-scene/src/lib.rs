@@ -2,11 +2,13 @@
 //!
 //! In: a `.glb` or `.gltf` file. Out: a [`zfail_plan::scene::Scene`] and the notices about what was repaired or left
 //! out; with [`load_animated`] also its animations, as poses at any time. [`complete`] adds the light and the camera
-//! that a file may lack.
+//! that a file may lack, and [`cut`] makes geometry of masked surfaces.
 
 mod animate;
 pub mod builtin;
 mod complete;
+pub mod cut;
+mod deform;
 mod placement;
 pub mod read;
 pub mod write;

@@ -161,6 +161,12 @@ pub(crate) fn is_moderate(m: &DAffine3) -> bool {
     m.to_cols_array().iter().all(|x| x.abs() <= 1e30)
 }
 
+/// `v` at unit length; `None` if it has no direction. One that is a unit vector but for single precision stays bit for bit.
+pub(crate) fn unit_vector(v: DVec3) -> Option<DVec3> {
+    const ROUNDING: f64 = 1e-6;
+    if (v.length_squared() - 1.0).abs() < ROUNDING { Some(v) } else { v.try_normalize() }
+}
+
 /// `q` at unit length. One that is a unit quaternion but for rounding stays bit for bit.
 pub(crate) fn unit_quaternion(q: DQuat) -> Option<DQuat> {
     let length = q.length();

@@ -12,6 +12,8 @@ pub(crate) struct Mesh {
     pub first: u32,
     /// Never used for another mesh.
     pub serial: u64,
+    /// Never used for another mesh, nor for this one once its vertices have moved.
+    pub version: u64,
 }
 
 /// Meshes by slot, and their positions on the GPU.
@@ -50,7 +52,7 @@ impl Arena {
         }
         let serial = self.next_serial;
         self.next_serial += 1;
-        let mesh = Mesh { topology, first: self.used as u32, serial };
+        let mesh = Mesh { topology, first: self.used as u32, serial, version: serial };
         upload(queue, &self.buffer, &mesh);
         self.used += count;
         let slot = self.slots.iter().position(Option::is_none).unwrap_or(self.slots.len());
@@ -59,6 +61,18 @@ impl Arena {
         }
         self.slots[slot] = Some(mesh);
         Ok((slot, serial, grow))
+    }
+
+    /// Moves the vertices of a mesh that bends.
+    pub fn move_vertices(&mut self, queue: &Queue, slot: usize, serial: u64, to: &[[f32; 3]]) -> Result<(), Error> {
+        let mesh = self.slots.get_mut(slot).and_then(Option::as_mut).filter(|mesh| mesh.serial == serial);
+        let mesh = mesh.ok_or(Error::NoMesh)?;
+        if mesh.topology.move_vertices(to)? {
+            mesh.version = self.next_serial;
+            self.next_serial += 1;
+            upload(queue, &self.buffer, mesh);
+        }
+        Ok(())
     }
 
     /// Forgets a mesh; its place in the buffer is reclaimed at the next growth.

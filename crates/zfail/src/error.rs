@@ -19,6 +19,9 @@ pub enum Error {
         /// Index of the caster in the frame.
         caster: usize,
     },
+    /// The vertices of a mesh were to move that was removed or belongs to another [`crate::Shadows`].
+    #[error("the mesh is not registered")]
+    NoMesh,
     /// A buffer would exceed the device's limits.
     #[error(
         "{what} need {bytes} bytes, but this device allows {limit} in one buffer; request higher limits or split the scene"

@@ -136,12 +136,29 @@ impl Shadows {
         triangles: &[[u32; 3]],
         surface: impl Fn(usize) -> S,
     ) -> Result<MeshId, Error> {
-        let topology = Topology::new(positions, triangles, surface)?;
+        self.add_topology(device, queue, Topology::new(positions, triangles, surface)?)
+    }
+
+    /// Registers a mesh whose topology is known already: one made elsewhere, or one that bends ([`Topology::bending`]).
+    ///
+    /// # Errors
+    /// More vertices than the device's buffers hold.
+    pub fn add_topology(&mut self, device: &Device, queue: &Queue, topology: Topology) -> Result<MeshId, Error> {
         let (slot, serial, moved) = self.arena.add(device, queue, topology)?;
         if moved {
             self.bindings = bind(device, &self.layout, &self.arena, &self.buffers);
         }
         Ok(MeshId { slot, serial })
+    }
+
+    /// Moves the vertices of a mesh that bends ([`Topology::bending`]): the very positions that the depth pass will draw, in
+    /// the order in which its topology was made. Silhouettes and bounds follow at the next [`Self::prepare`].
+    ///
+    /// # Errors
+    /// A mesh that is not registered or rigid, another number of positions, or coordinates that are not finite. Nothing
+    /// has moved then.
+    pub fn move_vertices(&mut self, queue: &Queue, mesh: MeshId, positions: &[[f32; 3]]) -> Result<(), Error> {
+        self.arena.move_vertices(queue, mesh.slot, mesh.serial, positions)
     }
 
     /// Forgets a mesh and gives back its topology; `None` if it is not registered here.
@@ -233,7 +250,7 @@ impl Shadows {
         for (c, caster) in frame.casters.iter().enumerate() {
             let mesh = self.arena.get(caster.mesh.slot, caster.mesh.serial).ok_or(Error::UnknownMesh { caster: c })?;
             let world_from_object = caster.world_from_object;
-            casters.push(plan::Caster { topology: &mesh.topology, mesh: mesh.serial, world_from_object });
+            casters.push(plan::Caster { topology: &mesh.topology, mesh: mesh.version, world_from_object });
         }
         find_extractable(&mut self.extractable, device, frame, &self.arena, self.costs);
         let planned = plan::Frame {

@@ -31,7 +31,7 @@ impl Course {
     /// # Errors
     /// If there is no such scene, or it cannot be used.
     pub fn new(name: &str, args: &args::Bench) -> Result<Self, Error> {
-        let mut animated = input::complete(name)?;
+        let mut animated = input::complete(name, &args.loading)?;
         if !animated.animations.first().is_some_and(|animation| animation.moves_anything()) {
             animated
                 .scene

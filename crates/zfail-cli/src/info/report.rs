@@ -1,22 +1,26 @@
 //! The facts of a scene, in the shape of the JSON output.
 //!
-//! Lengths are in metres, angles in degrees, colours linear RGB; positions and directions are in world space.
+//! Lengths are in metres, angles in degrees, colours linear RGB; positions and directions are in world space. Every list
+//! has the scene's order, so an index here is the index there.
 
+use super::mesh::MeshReport;
 use crate::error::Error;
 use rayon::prelude::*;
 use serde::Serialize;
-use zfail_plan::scene::{AlphaMode, Bounds, Camera, Instance, Light, LightKind, Material, Mesh, Scene};
-use zfail_plan::topology::{NONE, Part, Shape, Topology};
+use zfail_plan::scene::{AlphaMode, Bounds, Camera, Instance, Light, LightKind, Material};
 use zfail_plan::view::Projection;
-use zfail_scene::{Animated, Animation, FileInfo};
+use zfail_scene::read::{ChannelInfo, FileInfo};
+use zfail_scene::{Animated, Animation};
 
 /// A scene.
 #[derive(Serialize)]
 pub struct Report {
     pub scene: String,
     /// `null` for a built-in scene.
-    pub file: Option<FileReport>,
+    pub file: Option<FileInfo>,
+    pub extensions: Vec<ExtensionReport>,
     pub bounds: Option<[[f64; 3]; 2]>,
+    /// Of all instances.
     pub triangles: usize,
     pub meshes: Vec<MeshReport>,
     pub instances: Vec<InstanceReport>,
@@ -25,50 +29,17 @@ pub struct Report {
     pub animations: Vec<AnimationReport>,
     pub materials: Vec<MaterialReport>,
     pub textures: usize,
-    pub images: usize,
+    pub images: Vec<ImageReport>,
     pub notices: Vec<String>,
 }
 
-/// What the file says about itself.
+/// An extension that the file uses.
 #[derive(Serialize)]
-pub struct FileReport {
-    pub version: String,
-    pub generator: Option<String>,
-    pub extensions_used: Vec<String>,
-    pub extensions_required: Vec<String>,
-    pub skins: usize,
-    pub morphed_meshes: usize,
-}
-
-/// A mesh: its size and how closed it is.
-#[derive(Serialize)]
-pub struct MeshReport {
+pub struct ExtensionReport {
     pub name: String,
-    pub vertices: usize,
-    /// Vertices left after welding equal positions.
-    pub points: usize,
-    pub triangles: usize,
-    /// Share of the triangles that lie in parts without a border, 0 to 1.
-    pub closed_share: f64,
-    /// Share of the triangles that cast with single weight, 0 to 1.
-    pub single_share: f64,
-    /// Edges of one triangle.
-    pub boundary_edges: usize,
-    /// Edges of more than two triangles.
-    pub non_manifold_edges: usize,
-    /// Edges of two triangles that run the same way.
-    pub inconsistent_edges: usize,
-    /// Triangles that never cast: degenerate, or of a blended material.
-    pub not_casting: usize,
-    pub parts: Vec<PartReport>,
-}
-
-/// An edge-connected part of a mesh.
-#[derive(Serialize)]
-pub struct PartReport {
-    pub triangles: u32,
-    pub casting: &'static str,
-    pub why: &'static str,
+    pub required: bool,
+    /// What is made of it, in words.
+    pub treatment: String,
 }
 
 /// A placed mesh.
@@ -95,6 +66,13 @@ pub struct LightReport {
     pub color: [f32; 3],
     /// Candela, or lux for a directional light.
     pub intensity: f32,
+    /// Irradiance per intensity at equal steps over the range; empty for the inverse-square law.
+    pub falloff: Vec<f32>,
+    /// The texture that it projects.
+    pub cookie: Option<usize>,
+    /// Half extents of the box beyond which it reaches nothing.
+    #[serde(rename = "box")]
+    pub half_extents: Option<[f64; 3]>,
     pub excluded_instances: usize,
 }
 
@@ -116,8 +94,10 @@ pub struct AnimationReport {
     pub name: String,
     /// Seconds.
     pub duration: f64,
-    /// Whether it moves instances, lights or cameras; one of skins or morph targets alone does not.
+    /// Whether it changes anything that is rendered.
     pub moves: bool,
+    /// `null` for a built-in scene.
+    pub channels: Option<ChannelInfo>,
 }
 
 /// A material.
@@ -130,85 +110,67 @@ pub struct MaterialReport {
     pub textures: usize,
 }
 
+/// A decoded image.
+#[derive(Serialize)]
+pub struct ImageReport {
+    pub name: String,
+    /// Pixels.
+    pub size: [u32; 2],
+}
+
 impl Report {
     /// Gathers the facts; the topology of each mesh is built for this.
     ///
     /// # Errors
     /// If a mesh is beyond what topology supports.
     pub fn new(Animated { scene, animations, .. }: &Animated, file: Option<FileInfo>) -> Result<Self, Error> {
-        let meshes = scene.meshes.par_iter().enumerate().map(|(m, mesh)| MeshReport::new(scene, m, mesh));
+        let meshes = (0..scene.meshes.len()).into_par_iter().map(|mesh| MeshReport::new(scene, mesh));
+        let channels = |animation: usize| file.as_ref().and_then(|file| file.channels.get(animation).copied());
         Ok(Self {
             scene: scene.name.clone(),
-            file: file.map(FileReport::new),
+            extensions: file.as_ref().map(|file| extensions(file, &scene.notices)).unwrap_or_default(),
             bounds: Some(scene.bounds()).filter(|b| !b.is_empty()).map(|Bounds { min, max }| [min.into(), max.into()]),
             triangles: scene.instances.iter().map(|i| scene.meshes[i.mesh].triangles.len()).sum(),
             meshes: meshes.collect::<Result<_, _>>()?,
             instances: scene.instances.iter().map(InstanceReport::new).collect(),
             lights: scene.lights.iter().map(LightReport::new).collect(),
             cameras: scene.cameras.iter().map(CameraReport::new).collect(),
-            animations: animations.iter().map(AnimationReport::new).collect(),
+            animations: (0..)
+                .zip(animations)
+                .map(|(i, animation)| AnimationReport::new(animation, channels(i)))
+                .collect(),
             materials: scene.materials.iter().map(MaterialReport::new).collect(),
             textures: scene.textures.len(),
-            images: scene.images.len(),
+            images: scene
+                .images
+                .iter()
+                .map(|i| ImageReport { name: i.name.clone(), size: [i.width, i.height] })
+                .collect(),
             notices: scene.notices.clone(),
+            file,
         })
     }
 }
 
-impl FileReport {
-    fn new(info: FileInfo) -> Self {
-        Self {
-            version: info.version,
-            generator: info.generator,
-            extensions_used: info.extensions_used,
-            extensions_required: info.extensions_required,
-            skins: info.skins,
-            morphed_meshes: info.morphed_meshes,
-        }
-    }
-}
-
-impl MeshReport {
-    fn new(scene: &Scene, index: usize, mesh: &Mesh) -> Result<Self, Error> {
-        let casts = |triangle| scene.triangle_casts(index, triangle);
-        let topology = Topology::new(&mesh.positions, &mesh.triangles, casts)
-            .map_err(|e| Error::failed(format!("mesh {index} '{}' cannot cast shadows: {e}", mesh.name)))?;
-        let [boundary_edges, _, non_manifold_edges] = topology.edge_counts();
-        let inconsistent = topology.incidence().filter(|(_, incident)| {
-            let (count, sum) = incident.iter().fold((0, 0), |(count, sum), (_, o)| (count + 1, sum + o));
-            count == 2 && sum != 0
-        });
-        let share = |of: fn(&Part) -> bool| {
-            let triangles: u32 =
-                topology.parts.iter().filter(|part| of(part)).map(|part| part.triangles.len() as u32).sum();
-            f64::from(triangles) / mesh.triangles.len().max(1) as f64
-        };
-        Ok(Self {
-            name: mesh.name.clone(),
-            vertices: mesh.positions.len(),
-            points: topology.positions.len(),
-            triangles: mesh.triangles.len(),
-            closed_share: share(|part| part.shape != Shape::Open),
-            single_share: share(|part| matches!(part.shape, Shape::Solid { .. })),
-            boundary_edges,
-            non_manifold_edges,
-            inconsistent_edges: inconsistent.count(),
-            not_casting: topology.part_of.iter().filter(|part| **part == NONE).count(),
-            parts: topology.parts.iter().map(PartReport::new).collect(),
-        })
-    }
-}
-
-impl PartReport {
-    fn new(part: &Part) -> Self {
-        let (casting, why) = match part.shape {
-            Shape::Solid { inside: 1.. } => ("single", "closed, facing outward"),
-            Shape::Solid { .. } => ("single", "closed, facing inward"),
-            Shape::SelfIntersecting => ("double", "closed, but it meets itself"),
-            Shape::Open => ("double", "it has a border, a fin or inconsistent winding"),
-        };
-        Self { triangles: part.triangles.len() as u32, casting, why }
-    }
+/// The extensions of a file. The loader has a notice for each that it does not read in full.
+fn extensions(file: &FileInfo, notices: &[String]) -> Vec<ExtensionReport> {
+    let FileInfo { extensions_used: used, extensions_required: required, .. } = file;
+    let mut names: Vec<&String> = used.iter().chain(required).collect();
+    names.sort();
+    names.dedup();
+    let treatment = |name: &str| {
+        let about = notices.iter().find(|notice| notice.contains(name));
+        about.map_or_else(
+            || "read".to_owned(),
+            |notice| notice.replacen(name, "", 1).trim_matches([' ', ':']).to_owned(),
+        )
+    };
+    let report = |name: &String| ExtensionReport {
+        name: name.clone(),
+        required: required.contains(name),
+        treatment: treatment(name),
+    };
+    names.into_iter().map(report).collect()
 }
 
 impl InstanceReport {
@@ -241,6 +203,9 @@ impl LightReport {
             cone,
             color: light.color,
             intensity: light.intensity,
+            falloff: light.shape.falloff.clone(),
+            cookie: light.shape.cookie,
+            half_extents: light.shape.half_extents.map(Into::into),
             excluded_instances: light.excluded.len(),
         }
     }
@@ -265,8 +230,9 @@ impl CameraReport {
 }
 
 impl AnimationReport {
-    fn new(animation: &Animation) -> Self {
-        Self { name: animation.name.clone(), duration: animation.duration, moves: animation.moves_anything() }
+    fn new(animation: &Animation, channels: Option<ChannelInfo>) -> Self {
+        let Animation { name, duration, .. } = animation;
+        Self { name: name.clone(), duration: *duration, moves: animation.moves_anything(), channels }
     }
 }
 
@@ -281,14 +247,19 @@ impl MaterialReport {
         ];
         Self {
             name: material.name.clone(),
-            alpha: match material.alpha {
-                AlphaMode::Opaque => "opaque",
-                AlphaMode::Mask(_) => "mask",
-                AlphaMode::Blend => "blend",
-            },
+            alpha: alpha_name(material.alpha),
             double_sided: material.double_sided,
             unlit: material.unlit,
             textures: textures.iter().flatten().count(),
         }
+    }
+}
+
+/// glTF's word in small letters.
+pub fn alpha_name(alpha: AlphaMode) -> &'static str {
+    match alpha {
+        AlphaMode::Opaque => "opaque",
+        AlphaMode::Mask(_) => "mask",
+        AlphaMode::Blend => "blend",
     }
 }

@@ -1,142 +1,209 @@
-//! The report as a person reads it.
+//! The report as a person reads it: details of what is few, sums of what is many.
 
-use super::report::{AnimationReport, CameraReport, FileReport, LightReport, MeshReport, Report};
+use super::mesh::MeshReport;
+use super::page::Page;
+use super::report::{
+    AnimationReport, CameraReport, ExtensionReport, ImageReport, InstanceReport, LightReport, MaterialReport, Report,
+};
 use std::collections::BTreeMap;
-use std::fmt::{self, Display, Formatter};
+use zfail_scene::read::FileInfo;
 
-impl Display for Report {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let instances = count(self.instances.len(), "instance");
-        writeln!(f, "scene '{}': {} in {instances}", self.scene, count(self.triangles, "triangle"))?;
-        if let Some([min, max]) = self.bounds {
-            writeln!(f, "from {} to {} m", point(min), point(max))?;
-        }
-        if let Some(file) = &self.file {
-            file.fmt(f)?;
-        }
-        list(f, "meshes", &self.meshes, "")?;
-        list(f, "lights", &self.lights, " (rendering adds a directional one)")?;
-        list(f, "cameras", &self.cameras, " (rendering adds one that frames the scene)")?;
-        list(f, "animations", &self.animations, "")?;
+/// The whole report.
+pub fn text(report: &Report) -> String {
+    let mut page = Page::default();
+    let instances = count(report.instances.len(), "instance");
+    page.line(0, &format!("scene '{}': {} in {instances}", report.scene, count(report.triangles, "triangle")));
+    if let Some([min, max]) = report.bounds {
+        page.line(0, &format!("from {} to {} m", point(min), point(max)));
+    }
+    if let Some(info) = &report.file {
+        file(&mut page, info);
+    }
+    if !report.extensions.is_empty() {
+        page.list("extensions", "", &report.extensions, |e| usize::from(e.required), |e| vec![extension(e)]);
+    }
+    page.list("meshes", &all_meshes(&report.meshes), &report.meshes, |mesh| mesh.triangles, mesh);
+    let none = if report.lights.is_empty() { " (rendering adds a directional one)" } else { "" };
+    page.list("lights", none, &report.lights, |_| 0, |it| vec![light(it)]);
+    let none = if report.cameras.is_empty() { " (rendering adds one that frames the scene)" } else { "" };
+    page.list("cameras", none, &report.cameras, |_| 0, |it| vec![camera(it)]);
+    page.list("animations", "", &report.animations, |_| 0, |it| vec![animation(it)]);
+    page.list("materials", &all_materials(&report.materials), &report.materials, |_| 0, |it| vec![material(it)]);
+    page.gap();
+    page.line(0, &format!("textures: {}, images: {}", report.textures, all_images(&report.images)));
+    page.line(0, &all_instances(&report.instances));
+    page.gap();
+    page.line(0, &format!("notices: {}", report.notices.len()));
+    report.notices.iter().for_each(|notice| page.line(2, notice));
+    page.finish()
+}
 
-        let with = |alpha: &str| self.materials.iter().filter(|m| m.alpha == alpha).count();
-        writeln!(
-            f,
-            "\nmaterials: {} ({} opaque, {} mask, {} blend), {} textures, {} images",
-            self.materials.len(),
-            with("opaque"),
-            with("mask"),
-            with("blend"),
-            self.textures,
-            self.images
-        )?;
-        let mirrored = self.instances.iter().filter(|instance| instance.mirrored).count();
-        let silent = self.instances.iter().filter(|instance| !instance.casts_shadow).count();
-        writeln!(f, "instances: {} ({mirrored} mirrored, {silent} cast no shadow)", self.instances.len())?;
-
-        writeln!(f, "\nnotices: {}", self.notices.len())?;
-        self.notices.iter().try_for_each(|notice| writeln!(f, "  {notice}"))
+fn file(page: &mut Page, info: &FileInfo) {
+    let generator = info.generator.as_ref().map(|generator| format!(", generator '{generator}'")).unwrap_or_default();
+    page.line(0, &format!("glTF {}{generator}", info.version));
+    if !info.skins.is_empty() {
+        let joints = info.skins.iter().map(|skin| skin.joints).sum();
+        page.line(0, &format!("{} with {}", count(info.skins.len(), "skin"), count(joints, "joint")));
+    }
+    if !info.morphs.is_empty() {
+        let targets = info.morphs.iter().map(|morph| morph.targets).sum();
+        page.line(0, &format!("{} with {}", count(info.morphs.len(), "mesh"), count(targets, "morph target")));
     }
 }
 
-impl Display for FileReport {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(f, "glTF {}", self.version)?;
-        if let Some(generator) = &self.generator {
-            write!(f, ", generator '{generator}'")?;
-        }
-        let morphed = count(self.morphed_meshes, "mesh");
-        writeln!(f, "; {}, {morphed} with morph targets", count(self.skins, "skin"))?;
-        if self.extensions_used.is_empty() {
-            return Ok(());
-        }
-        let required = |name: &&String| self.extensions_required.contains(name);
-        let names = self
-            .extensions_used
-            .iter()
-            .map(|name| if required(&name) { format!("{name} (required)") } else { name.clone() });
-        writeln!(f, "extensions: {}", names.collect::<Vec<_>>().join(", "))
-    }
+fn extension(extension: &ExtensionReport) -> String {
+    let required = if extension.required { " (required)" } else { "" };
+    format!("{}{required}: {}", extension.name, extension.treatment)
 }
 
-impl Display for MeshReport {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "'{}': {} triangles, {} vertices ({} distinct points), {} closed; {} boundary, {} non-manifold and {} \
-             inconsistently wound edges",
-            self.name,
-            self.triangles,
-            self.vertices,
-            self.points,
-            percent(self.closed_share),
-            self.boundary_edges,
-            self.non_manifold_edges,
-            self.inconsistent_edges
-        )?;
-        let mut kinds = BTreeMap::new();
-        for part in &self.parts {
-            let (parts, triangles) = kinds.entry((part.casting, part.why)).or_insert((0_usize, 0_u64));
-            *parts += 1;
-            *triangles += u64::from(part.triangles);
-        }
-        for ((casting, why), (parts, triangles)) in kinds.into_iter().rev() {
-            write!(f, "\n       casts {casting}: {triangles} triangles in {} ({why})", count(parts, "part"))?;
-        }
-        if self.not_casting > 0 {
-            write!(f, "\n       casts nothing: {} triangles (degenerate or blended)", self.not_casting)?;
-        }
-        Ok(())
+/// The sums over many meshes.
+fn all_meshes(meshes: &[MeshReport]) -> String {
+    if meshes.len() < 2 {
+        return String::new();
     }
+    let sum = |of: fn(&MeshReport) -> usize| meshes.iter().map(of).sum::<usize>();
+    let triangles = sum(|mesh| mesh.triangles);
+    let closed: f64 = meshes.iter().map(|mesh| mesh.closed_share * mesh.triangles as f64).sum();
+    format!(
+        ", together {}, {}, {} closed; {} boundary, {} non-manifold and {} inconsistently wound edges",
+        count(triangles, "triangle"),
+        count(sum(|mesh| mesh.vertices), "vertex"),
+        percent(closed / triangles.max(1) as f64),
+        sum(|mesh| mesh.boundary_edges),
+        sum(|mesh| mesh.non_manifold_edges),
+        sum(|mesh| mesh.inconsistent_edges),
+    )
 }
 
-impl Display for LightReport {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(f, "'{}': {}", self.name, self.kind)?;
-        if let Some(position) = self.position {
-            write!(f, " at {}", point(position))?;
-        }
-        if let Some(direction) = self.direction {
-            write!(f, " towards {}", point(direction))?;
-        }
-        if let Some([inner, outer]) = self.cone {
-            write!(f, ", cone {inner:.1} to {outer:.1} degrees")?;
-        }
-        if let Some(range) = self.range {
-            write!(f, ", range {range:.3} m")?;
-        }
-        let unit = if self.position.is_some() { "cd" } else { "lx" };
-        write!(f, ", {} {unit}, colour {}", self.intensity, point(self.color.map(f64::from)))?;
-        match self.excluded_instances {
-            0 => Ok(()),
-            n => write!(f, "; excludes {}", count(n, "caster")),
-        }
+fn mesh(mesh: &MeshReport) -> Vec<String> {
+    let mut lines = vec![format!(
+        "'{}': {}, {} ({} after welding), {} closed",
+        mesh.name,
+        count(mesh.triangles, "triangle"),
+        count(mesh.vertices, "vertex"),
+        mesh.points,
+        percent(mesh.closed_share)
+    )];
+    if mesh.boundary_edges + mesh.non_manifold_edges + mesh.inconsistent_edges > 0 {
+        lines.push(format!(
+            "edges: {} boundary, {} non-manifold, {} inconsistently wound",
+            mesh.boundary_edges, mesh.non_manifold_edges, mesh.inconsistent_edges
+        ));
     }
+    let mut rules = BTreeMap::new();
+    for part in &mesh.parts {
+        let (parts, triangles) = rules.entry((part.casting, part.why)).or_insert((0, 0));
+        *parts += 1;
+        *triangles += part.triangles as usize;
+    }
+    for ((casting, why), (parts, triangles)) in rules.into_iter().rev() {
+        let (triangles, parts) = (count(triangles, "triangle"), count(parts, "part"));
+        lines.push(format!("casts {casting}: {triangles} in {parts} ({why})"));
+    }
+    let masked = mesh.surfaces.iter().filter(|surface| surface.alpha == "mask" && surface.casts);
+    let masked: usize = masked.map(|surface| surface.triangles).sum();
+    if masked > 0 {
+        lines.push(format!("casts as if it had no holes: {} with an alpha mask", count(masked, "triangle")));
+    }
+    let through: usize = mesh.surfaces.iter().filter(|surface| !surface.casts).map(|surface| surface.triangles).sum();
+    if through > 0 {
+        lines.push(format!("casts nothing: {} that let light through", count(through, "triangle")));
+    }
+    // A triangle that lets light through may be degenerate too; it is not counted twice.
+    let degenerate = mesh.not_casting.saturating_sub(through);
+    if degenerate > 0 {
+        lines.push(format!("casts nothing: {} without area", count(degenerate, "triangle")));
+    }
+    lines
 }
 
-impl Display for CameraReport {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(f, "'{}': {} at {} towards {}", self.name, self.kind, point(self.position), point(self.direction))?;
-        match (self.yfov, self.ymag) {
-            (Some(yfov), _) => write!(f, ", {yfov:.1} degrees high"),
-            (None, Some(ymag)) => write!(f, ", {:.3} m high", 2.0 * ymag),
-            (None, None) => Ok(()),
-        }
+fn light(light: &LightReport) -> String {
+    let mut text = format!("'{}': {}", light.name, light.kind);
+    if let Some(position) = light.position {
+        text += &format!(" at {}", point(position));
     }
+    if let Some(direction) = light.direction {
+        text += &format!(" towards {}", point(direction));
+    }
+    if let Some([inner, outer]) = light.cone {
+        text += &format!(", cone {inner:.1} to {outer:.1} degrees");
+    }
+    if let Some(range) = light.range {
+        text += &format!(", range {range:.3} m");
+    }
+    let unit = if light.position.is_some() { "cd" } else { "lx" };
+    text += &format!(", {} {unit}, colour {}", light.intensity, point(light.color.map(f64::from)));
+    if !light.falloff.is_empty() {
+        text += &format!(", falloff by {} samples", light.falloff.len());
+    }
+    if let Some(texture) = light.cookie {
+        text += &format!(", cookie texture {texture}");
+    }
+    if let Some(half) = light.half_extents {
+        text += &format!(", box {} m", point(half.map(|half| 2.0 * half)));
+    }
+    if light.excluded_instances > 0 {
+        text += &format!("; excludes {}", count(light.excluded_instances, "caster"));
+    }
+    text
 }
 
-impl Display for AnimationReport {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(f, "'{}': {:.3} s", self.name, self.duration)?;
-        if self.moves { Ok(()) } else { write!(f, ", moves no instance, light or camera") }
-    }
+fn camera(camera: &CameraReport) -> String {
+    let extent = match (camera.yfov, camera.ymag) {
+        (Some(yfov), _) => format!(", {yfov:.1} degrees high"),
+        (None, Some(ymag)) => format!(", {:.3} m high", 2.0 * ymag),
+        (None, None) => String::new(),
+    };
+    let (position, direction) = (point(camera.position), point(camera.direction));
+    format!("'{}': {} at {position} towards {direction}{extent}", camera.name, camera.kind)
 }
 
-/// A heading with the number of items, or 0 with the words `if_none`, and each item with its index.
-fn list(f: &mut Formatter<'_>, heading: &str, items: &[impl Display], if_none: &str) -> fmt::Result {
-    let remark = if items.is_empty() { if_none } else { "" };
-    writeln!(f, "\n{heading}: {}{remark}", items.len())?;
-    items.iter().enumerate().try_for_each(|(i, item)| writeln!(f, "{i:>5}  {item}"))
+fn animation(animation: &AnimationReport) -> String {
+    let mut text = format!("'{}': {:.3} s", animation.name, animation.duration);
+    if let Some(channels) = animation.channels {
+        let kinds = [
+            (channels.nodes, "nodes"),
+            (channels.joints, "joints"),
+            (channels.weights, "morph weights"),
+            (channels.other, "something else"),
+        ];
+        let moved = kinds.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{} of {what}", count(*n, "channel")));
+        text += &moved.map(|moved| format!(", {moved}")).collect::<String>();
+    }
+    if !animation.moves {
+        text += "; nothing that is rendered moves";
+    }
+    text
+}
+
+fn all_materials(materials: &[MaterialReport]) -> String {
+    let with = |alpha: &str| materials.iter().filter(|material| material.alpha == alpha).count();
+    format!(" ({} opaque, {} mask, {} blend)", with("opaque"), with("mask"), with("blend"))
+}
+
+fn material(material: &MaterialReport) -> String {
+    let mut text = format!("'{}': {}", material.name, material.alpha);
+    if material.double_sided {
+        text += ", double-sided";
+    }
+    if material.unlit {
+        text += ", unlit";
+    }
+    if material.textures > 0 {
+        text += &format!(", {}", count(material.textures, "texture"));
+    }
+    text
+}
+
+fn all_images(images: &[ImageReport]) -> String {
+    let largest = images.iter().map(|image| image.size).max_by_key(|[w, h]| u64::from(*w) * u64::from(*h));
+    largest.map_or_else(|| "0".to_owned(), |[w, h]| format!("{} (up to {w}x{h} pixels)", images.len()))
+}
+
+fn all_instances(instances: &[InstanceReport]) -> String {
+    let mirrored = instances.iter().filter(|instance| instance.mirrored).count();
+    let silent = instances.iter().filter(|instance| !instance.casts_shadow).count();
+    format!("instances: {} ({mirrored} mirrored, {silent} cast no shadow)", instances.len())
 }
 
 fn point([x, y, z]: [f64; 3]) -> String {
@@ -150,6 +217,7 @@ fn count(n: usize, thing: &str) -> String {
     match (n, thing) {
         (1, _) => format!("1 {thing}"),
         (_, "mesh") => format!("{n} meshes"),
+        (_, "vertex") => format!("{n} vertices"),
         _ => format!("{n} {thing}s"),
     }
 }

@@ -45,7 +45,7 @@ pub use stages::Planner;
 pub struct Caster<'a> {
     /// Its incidence and positions.
     pub topology: &'a Topology,
-    /// Tells meshes apart: the same number always comes with the same topology.
+    /// Tells meshes apart: the same number always comes with the same topology in the same place.
     pub mesh: u64,
     /// Object to world, invertible.
     pub world_from_object: DAffine3,

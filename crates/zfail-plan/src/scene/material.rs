@@ -68,6 +68,17 @@ pub enum AlphaMode {
     Blend,
 }
 
+/// What triangles with a mask ([`AlphaMode::Mask`]) are to light. Volumes know triangles only, not what a texture leaves
+/// of them; to cast shadows of the mask's shape, triangles are cut along it beforehand and made opaque.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MaskCasting {
+    /// They block light as a whole.
+    #[default]
+    Solid,
+    /// They let all light through.
+    Off,
+}
+
 /// A texture as a material uses it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextureRef {

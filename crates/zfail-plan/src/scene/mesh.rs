@@ -28,6 +28,9 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// Runs of triangles with one material, in order, covering all of `triangles`.
     pub primitives: Vec<Primitive>,
+    /// Of a mesh that poses bend ([`super::BentMesh`]), a number per vertex, equal for vertices that have bit-equal
+    /// positions in every pose: shadow volumes weld these. Empty for a rigid mesh, whose vertices weld by position.
+    pub alike: Vec<u32>,
 }
 
 /// A run of triangles with one material.
@@ -40,6 +43,12 @@ pub struct Primitive {
 }
 
 impl Mesh {
+    /// Whether poses move its vertices against each other.
+    #[must_use]
+    pub fn bends(&self) -> bool {
+        !self.alike.is_empty()
+    }
+
     /// Object-space bounds of all vertices that a triangle uses.
     #[must_use]
     pub fn bounds(&self) -> Bounds {

@@ -10,9 +10,9 @@ mod pose;
 
 pub use bounds::Bounds;
 pub use light::{Light, LightKind, LightShape};
-pub use material::{AlphaMode, Filter, Image, Material, Texture, TextureRef, Wrap};
+pub use material::{AlphaMode, Filter, Image, MaskCasting, Material, Texture, TextureRef, Wrap};
 pub use mesh::{Mesh, Primitive};
-pub use pose::Pose;
+pub use pose::{BentMesh, Pose};
 
 use crate::topology::Surface;
 use crate::view::Projection;
@@ -37,6 +37,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Cameras, in depth-first order of the nodes that hold them.
     pub cameras: Vec<Camera>,
+    /// What masked surfaces are to light.
+    pub mask_casting: MaskCasting,
     /// Ambient radiance that reaches every surface, linear RGB.
     pub ambient: [f32; 3],
     /// Radiance of pixels that see no surface, linear RGB.
@@ -85,7 +87,8 @@ impl Scene {
         bounds
     }
 
-    /// Whether triangle `triangle` of mesh `mesh` blocks light at all: blended materials let it through.
+    /// Whether triangle `triangle` of mesh `mesh` blocks light at all: blended materials let it through, and masked ones
+    /// where [`Scene::mask_casting`] says so.
     #[must_use]
     pub fn triangle_casts(&self, mesh: usize, triangle: usize) -> bool {
         self.triangle_surface(mesh, triangle) != Surface::Through
@@ -99,6 +102,7 @@ impl Scene {
         };
         match material.alpha {
             AlphaMode::Blend => Surface::Through,
+            AlphaMode::Mask(_) if self.mask_casting == MaskCasting::Off => Surface::Through,
             AlphaMode::Mask(_) => Surface::Partly,
             AlphaMode::Opaque if material.double_sided => Surface::BothSides,
             AlphaMode::Opaque => Surface::Front,

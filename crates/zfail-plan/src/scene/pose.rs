@@ -2,7 +2,7 @@
 //!
 //! In: placements by index. Out: the same placements in a [`Scene`].
 
-use super::{LightKind, Scene};
+use super::{LightKind, Mesh, Scene};
 use glam::{DAffine3, DMat3};
 
 /// Where everything is that an animation can move; each list has the indices of the [`Scene`] that it belongs to.
@@ -18,6 +18,21 @@ pub struct Pose {
     pub light_axes: Vec<DMat3>,
     /// Per camera, view to world: rotation and translation only.
     pub cameras: Vec<DAffine3>,
+    /// Of every mesh that bends, in the order of the scene's meshes.
+    pub bent: Vec<BentMesh>,
+}
+
+/// The vertices of a mesh that bends: skins and morph targets, computed once for all who read them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BentMesh {
+    /// Index into [`Scene::meshes`].
+    pub mesh: usize,
+    /// As [`super::Mesh::positions`], of the same length.
+    pub positions: Vec<[f32; 3]>,
+    /// As [`super::Mesh::normals`], of the same length.
+    pub normals: Vec<[f32; 3]>,
+    /// As [`super::Mesh::tangents`], of the same length.
+    pub tangents: Vec<[f32; 4]>,
 }
 
 impl Pose {
@@ -39,11 +54,31 @@ impl Pose {
         self.light_axes.extend(scene.lights.iter().map(|light| light.shape.axes));
         self.cameras.clear();
         self.cameras.extend(scene.cameras.iter().map(|camera| camera.world_from_view));
+        let bending = || scene.meshes.iter().enumerate().filter(|(_, mesh)| mesh.bends());
+        self.bent.resize_with(bending().count(), BentMesh::default);
+        for (bent, (index, mesh)) in self.bent.iter_mut().zip(bending()) {
+            bent.mesh = index;
+            bent.positions.clone_from(&mesh.positions);
+            bent.normals.clone_from(&mesh.normals);
+            bent.tangents.clone_from(&mesh.tangents);
+        }
+    }
+}
+
+impl BentMesh {
+    /// Whether these can be the vertices of `mesh`.
+    #[must_use]
+    pub fn fits(&self, mesh: &Mesh) -> bool {
+        let lengths = |p: usize, n: usize, t: usize| [p, n, t];
+        mesh.bends()
+            && lengths(self.positions.len(), self.normals.len(), self.tangents.len())
+                == lengths(mesh.positions.len(), mesh.normals.len(), mesh.tangents.len())
     }
 }
 
 impl Scene {
-    /// Moves everything to where `pose` has it. Entries beyond the scene's own are ignored.
+    /// Moves everything to where `pose` has it. Entries beyond the scene's own are ignored, and so are bent meshes that
+    /// do not fit the scene's.
     pub fn set_pose(&mut self, pose: &Pose) {
         for (instance, world_from_object) in self.instances.iter_mut().zip(&pose.instances) {
             instance.world_from_object = *world_from_object;
@@ -56,6 +91,13 @@ impl Scene {
         }
         for (camera, world_from_view) in self.cameras.iter_mut().zip(&pose.cameras) {
             camera.world_from_view = *world_from_view;
+        }
+        for bent in &pose.bent {
+            if let Some(mesh) = self.meshes.get_mut(bent.mesh).filter(|mesh| bent.fits(mesh)) {
+                mesh.positions.clone_from(&bent.positions);
+                mesh.normals.clone_from(&bent.normals);
+                mesh.tangents.clone_from(&bent.tangents);
+            }
         }
     }
 }
@@ -82,6 +124,31 @@ mod tests {
         assert_ne!(Pose::of(&scene), rest);
         scene.set_pose(&rest);
         assert_eq!(Pose::of(&scene), rest);
+    }
+
+    #[test]
+    fn only_meshes_that_bend_are_bent() {
+        let triangle = |alike: &[u32]| Mesh {
+            positions: vec![[0.0; 3]; 3],
+            triangles: vec![[0, 1, 2]],
+            alike: alike.to_vec(),
+            ..Mesh::default()
+        };
+        let mut scene = Scene { meshes: vec![triangle(&[]), triangle(&[0, 1, 2])], ..Scene::default() };
+        let mut pose = Pose::of(&scene);
+        assert_eq!(pose.bent.iter().map(|bent| bent.mesh).collect::<Vec<_>>(), [1]);
+        pose.bent[0].positions[2] = [1.0; 3];
+        scene.set_pose(&pose);
+        assert_eq!(scene.meshes[1].positions[2], [1.0; 3]);
+        assert_eq!(Pose::of(&scene), pose);
+        let rigid = BentMesh { mesh: 0, ..pose.bent[0].clone() };
+        let short = BentMesh { positions: vec![[2.0; 3]; 2], ..pose.bent[0].clone() };
+        scene.set_pose(&Pose {
+            bent: vec![rigid, short, BentMesh { mesh: 7, ..BentMesh::default() }],
+            ..Pose::default()
+        });
+        assert_eq!(Pose::of(&scene), pose);
+        assert_eq!(scene.meshes[0].positions[2], [0.0; 3]);
     }
 
     #[test]

@@ -9,6 +9,7 @@
 //! McGuire et al. 2003, section 4, stores the same for closed 2-manifolds only. The weld is by bit-equal position and
 //! nothing else, so shadow geometry and rendered geometry can never differ.
 
+mod bend;
 mod closed;
 mod convex;
 mod embedded;
@@ -20,7 +21,7 @@ pub use convex::ConvexPart;
 pub use parts::{Cover, Part, Shape};
 pub use twins::same_winding;
 
-use crate::scene::Bounds;
+use crate::scene::{Bounds, Scene};
 use rayon::prelude::*;
 
 /// Marks an edge record's missing second triangle.
@@ -55,6 +56,17 @@ pub enum TopologyError {
         /// How many.
         count: usize,
     },
+    /// One number per vertex is needed.
+    #[error("the mesh has {vertices} vertices, and the list for them has {found} entries")]
+    WrongLength {
+        /// How many vertices there are.
+        vertices: usize,
+        /// How many entries came.
+        found: usize,
+    },
+    /// Only meshes made by [`Topology::bending`] bend.
+    #[error("the mesh is rigid; meshes whose vertices move have to be declared so")]
+    Rigid,
 }
 
 /// What a triangle is to light and to the depth pass.
@@ -112,6 +124,8 @@ pub struct Topology {
     /// Its largest convex part, if it has one of few faces.
     pub convex: Option<ConvexPart>,
     bounds: Bounds,
+    /// Of a mesh that bends.
+    bend: Option<bend::Bend>,
     edges: Vec<Edge>,
     fans: Vec<Fan>,
     fan_triangles: Vec<u32>,
@@ -128,16 +142,57 @@ impl Topology {
         triangles: &[[u32; 3]],
         surface: impl Fn(usize) -> S,
     ) -> Result<Self, TopologyError> {
-        let surface = |t: usize| -> Surface { surface(t).into() };
+        Self::build(positions, triangles, None, |t| surface(t).into())
+    }
+
+    /// [`Self::new`] for a mesh whose vertices move against each other (skins, morph targets), given in any pose. `alike`
+    /// has a number per vertex; those with equal numbers have bit-equal positions in every pose, and are welded. Nothing
+    /// that follows from positions is assumed to last: all its parts cast from both sides.
+    ///
+    /// # Errors
+    /// As [`Self::new`], and if `alike` has another length than `positions`.
+    pub fn bending<S: Into<Surface>>(
+        positions: &[[f32; 3]],
+        triangles: &[[u32; 3]],
+        alike: &[u32],
+        surface: impl Fn(usize) -> S,
+    ) -> Result<Self, TopologyError> {
+        if alike.len() != positions.len() {
+            return Err(TopologyError::WrongLength { vertices: positions.len(), found: alike.len() });
+        }
+        Self::build(positions, triangles, Some(alike), |t| surface(t).into())
+    }
+
+    /// The topology of mesh number `mesh` of `scene`, with what its materials are to light.
+    ///
+    /// # Errors
+    /// As [`Self::new`] and [`Self::bending`].
+    ///
+    /// # Panics
+    /// If there is no such mesh.
+    pub fn of(scene: &Scene, mesh: usize) -> Result<Self, TopologyError> {
+        let surface = |t| scene.triangle_surface(mesh, t);
+        let mesh = &scene.meshes[mesh];
+        match mesh.bends() {
+            false => Self::new(&mesh.positions, &mesh.triangles, surface),
+            true => Self::bending(&mesh.positions, &mesh.triangles, &mesh.alike, surface),
+        }
+    }
+
+    fn build(
+        positions: &[[f32; 3]],
+        triangles: &[[u32; 3]],
+        alike: Option<&[u32]>,
+        surface: impl Fn(usize) -> Surface,
+    ) -> Result<Self, TopologyError> {
         for (what, count) in [("vertices", positions.len()), ("triangles", triangles.len())] {
             if count > 1 << 30 {
                 return Err(TopologyError::TooLarge { what, count });
             }
         }
-        if let Some(vertex) = positions.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
-            return Err(TopologyError::NotFinite { vertex });
-        }
-        let (positions, triangles) = weld::weld(positions, triangles)?;
+        check_finite(positions)?;
+        let vertices = positions.len();
+        let weld::Welded { positions, sources, triangles } = weld::weld(positions, triangles, alike)?;
         let mut uses = Vec::with_capacity(triangles.len() * 3);
         for (t, &[a, b, c]) in triangles.iter().enumerate() {
             if a != b && b != c && c != a && surface(t) != Surface::Through {
@@ -158,6 +213,7 @@ impl Topology {
             twins: Vec::new(),
             convex: None,
             bounds: Bounds::EMPTY,
+            bend: alike.map(|_| bend::Bend::new(vertices, sources)),
             edges: Vec::with_capacity(uses.len() / 2),
             fans: Vec::new(),
             fan_triangles: Vec::new(),
@@ -178,9 +234,15 @@ impl Topology {
         parts::find(&mut topology);
         topology.twins = twins::find(&topology);
         parts::find_cover(&mut topology, surface);
-        topology.convex = convex::largest(&topology);
+        topology.convex = if topology.bends() { None } else { convex::largest(&topology) };
         topology.bounds = Bounds::of(topology.parts.iter().flat_map(|part| [part.bounds.min, part.bounds.max]));
         Ok(topology)
+    }
+
+    /// Whether its vertices may move against each other.
+    #[must_use]
+    pub fn bends(&self) -> bool {
+        self.bend.is_some()
     }
 
     /// Every edge at least one casting triangle uses, with the triangles there and `o(t, e)`: +1 if the triangle
@@ -256,6 +318,7 @@ impl Topology {
             + size_of_val(&*self.edges)
             + size_of_val(&*self.fans)
             + size_of_val(&*self.fan_triangles)
+            + self.bend.as_ref().map_or(0, bend::Bend::bytes)
     }
 
     fn at(&self, fan: &Fan) -> &[u32] {
@@ -277,6 +340,13 @@ impl Incident<'_> {
     /// Triangle index and `o(t, e)`.
     pub fn iter(&self) -> impl Iterator<Item = (usize, i32)> {
         self.0.iter().map(|&t| ((t & !REVERSED) as usize, orientation(t)))
+    }
+}
+
+fn check_finite(positions: &[[f32; 3]]) -> Result<(), TopologyError> {
+    match positions.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
+        None => Ok(()),
+        Some(vertex) => Err(TopologyError::NotFinite { vertex }),
     }
 }
 

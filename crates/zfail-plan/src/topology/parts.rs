@@ -43,6 +43,8 @@ pub enum Shape {
     },
     /// Every edge is balanced, but the surface meets itself, so that the winding number may take any value.
     SelfIntersecting,
+    /// Every edge is balanced, but vertices move, so that the surface may come to meet itself.
+    Bending,
     /// Some edge is unbalanced: a border, a fin, or neighbours wound against each other.
     Open,
 }
@@ -100,6 +102,8 @@ pub(super) fn find(topology: &mut Topology) {
             let triangles = &topology_ref.by_part[range.start as usize..range.end as usize];
             let shape = if !balanced {
                 Shape::Open
+            } else if topology_ref.bends() {
+                Shape::Bending
             } else if embedded::is_embedded(topology_ref, triangles) {
                 match closed::signed_volume(topology_ref, triangles) {
                     v if v > 0.0 => Shape::Solid { inside: 1 },

@@ -49,6 +49,7 @@ pub fn square(half: f32) -> Mesh {
         colors: vec![[1.0; 4]; 4],
         triangles: vec![[0, 1, 2], [0, 2, 3]],
         primitives: vec![Primitive { triangles: 0..2, material: Some(0) }],
+        ..Mesh::default()
     }
 }
 

@@ -1,7 +1,8 @@
-//! Scenes that move: keyframes of nodes, and the pose of everything at a moment.
+//! Scenes that move: keyframes of nodes and morph weights, and the pose of everything at a moment.
 //!
 //! In: a scene at rest, the part of its node hierarchy that moves, and key frames. Out: a [`Pose`] for any time.
-//! Data flow: `track` (a value over time) -> `rig` (local transforms, world transforms, whatever hangs on the nodes).
+//! Data flow: `track` (a value over time) -> `rig` (local transforms, world transforms, whatever hangs on the nodes)
+//! -> [`crate::deform`] (skins and morph targets).
 //!
 //! A pose is a function of animation and time alone: frames may be asked for in any order.
 
@@ -11,9 +12,12 @@ mod track;
 pub(crate) use rig::{MAX_COORDINATE, Move, Node, Parent, Rig, Trs, placed};
 pub(crate) use track::{Interpolation, Track};
 
+use crate::cut::{self, CutMesh};
+use crate::deform::{Body, Frame};
+use glam::DAffine3;
 use zfail_plan::scene::{Pose, Scene};
 
-/// A scene with the animations that move its instances, lights and cameras.
+/// A scene with the animations that move its instances, lights and cameras, and bend its meshes.
 #[derive(Clone, Debug, Default)]
 pub struct Animated {
     /// The scene at rest. Instances, lights and cameras may be added behind those that are there, as
@@ -22,6 +26,7 @@ pub struct Animated {
     /// In the order of the file.
     pub animations: Vec<Animation>,
     pub(crate) rig: Rig,
+    pub(crate) bodies: Vec<Body>,
 }
 
 /// An animation by name.
@@ -32,13 +37,23 @@ pub struct Animation {
     /// Time of the last key, seconds. Beyond it, and before the first key, everything stands still.
     pub duration: f64,
     pub(crate) moves: Vec<Move>,
+    pub(crate) morphs: Vec<Morph>,
+}
+
+/// What an animation does with the morph weights of a body.
+#[derive(Clone, Debug)]
+pub(crate) struct Morph {
+    /// Index into [`Animated::bodies`].
+    pub body: usize,
+    /// By morph target.
+    pub weights: Vec<Track<1>>,
 }
 
 impl Animation {
-    /// Whether it moves anything of the scene. An animation of skins or morph targets alone does not.
+    /// Whether it moves anything of the scene.
     #[must_use]
     pub fn moves_anything(&self) -> bool {
-        !self.moves.is_empty()
+        !self.moves.is_empty() || !self.morphs.is_empty()
     }
 
     /// The time within the animation at which it is `seconds` after its start if it is played again and again.
@@ -70,7 +85,45 @@ impl Animated {
     /// [`Self::pose`] in the memory of `pose`.
     pub fn pose_into(&self, animation: usize, seconds: f64, pose: &mut Pose) {
         pose.take(&self.scene);
-        let moves = self.animations.get(animation).map_or(&[][..], |animation| &animation.moves);
-        self.rig.pose(moves, seconds, pose);
+        if let Some(animation) = self.animations.get(animation) {
+            let world_from_node = self.rig.pose(&animation.moves, seconds, pose);
+            self.bend(&animation.morphs, seconds, &world_from_node, pose);
+        }
+    }
+
+    /// [`cut::cut_masked`] for a scene that moves: what is cut bends as it would have done uncut.
+    pub fn cut_masked(&mut self, tolerance: f64, limits: cut::Limits) -> Vec<CutMesh> {
+        let cuts = cut::cut_masked(&mut self.scene, tolerance, limits);
+        for cut in &cuts {
+            for body in self.bodies.iter_mut().filter(|body| body.mesh == cut.mesh) {
+                body.cuts.clone_from(&cut.sources);
+            }
+        }
+        cuts
+    }
+
+    /// Overwrites the bent meshes in `pose`, and the places of skins.
+    fn bend(&self, morphs: &[Morph], seconds: f64, world_from_node: &[DAffine3], pose: &mut Pose) {
+        let Pose { instances, bent, .. } = pose;
+        for (b, body) in self.bodies.iter().enumerate() {
+            let Some(bent) = bent.iter_mut().find(|bent| bent.mesh == body.mesh) else { continue };
+            let morph = morphs.iter().find(|morph| morph.body == b);
+            let animated: Option<Vec<f64>> =
+                morph.map(|morph| morph.weights.iter().map(|track| track.scalar(seconds)).collect());
+            match body.pose(animated.as_ref().unwrap_or(&body.weights), world_from_node, bent) {
+                Some(origin) => {
+                    if let Frame::Skin { instances: shown, .. } = &body.frame {
+                        shown.iter().for_each(|&i| instances[i] = DAffine3::from_translation(origin));
+                    }
+                }
+                // It stays at rest.
+                None => {
+                    let mesh = &self.scene.meshes[body.mesh];
+                    bent.positions.clone_from(&mesh.positions);
+                    bent.normals.clone_from(&mesh.normals);
+                    bent.tangents.clone_from(&mesh.tangents);
+                }
+            }
+        }
     }
 }

@@ -114,9 +114,10 @@ impl Rig {
         self.cameras.push(Carried { index, node, node_from_self, reach: 0.0, rest });
     }
 
-    /// Per node, whether it carries anything, itself or by a descendant.
-    pub fn loaded(&self) -> Vec<bool> {
+    /// Per node, whether it carries anything, itself or by a descendant. `joints` are nodes that carry skins.
+    pub fn loaded(&self, joints: impl Iterator<Item = usize>) -> Vec<bool> {
         let mut loaded = vec![false; self.nodes.len()];
+        joints.for_each(|node| loaded[node] = true);
         let instances = self.instances.iter().chain(&self.cameras).map(|carried| carried.node);
         instances.chain(self.lights.iter().map(|light| light.node)).for_each(|node| loaded[node] = true);
         for (i, node) in self.nodes.iter().enumerate().rev() {
@@ -127,8 +128,9 @@ impl Rig {
         loaded
     }
 
-    /// Overwrites the placements in `pose` of all that is carried. `moves` are in the order of their nodes.
-    pub fn pose(&self, moves: &[Move], seconds: f64, pose: &mut Pose) {
+    /// Overwrites the placements in `pose` of all that is carried. `moves` are in the order of their nodes. Returns the
+    /// world transform of every node.
+    pub fn pose(&self, moves: &[Move], seconds: f64, pose: &mut Pose) -> Vec<DAffine3> {
         let mut moves = moves.iter().peekable();
         let mut world_from_node: Vec<DAffine3> = Vec::with_capacity(self.nodes.len());
         for (i, node) in self.nodes.iter().enumerate() {
@@ -158,6 +160,7 @@ impl Rig {
             let Some(slot) = pose.cameras.get_mut(camera.index) else { continue };
             *slot = camera.world_from_self(&world_from_node).map_or(camera.rest, |world| rigid(&world));
         }
+        world_from_node
     }
 }
 

@@ -80,6 +80,13 @@ impl<const N: usize> Track<N> {
     }
 }
 
+impl Track<1> {
+    /// The morph weight at a time.
+    pub fn scalar(&self, seconds: f64) -> f64 {
+        self.at(seconds, |[a], [b], s| [a + s * (b - a)])[0]
+    }
+}
+
 impl Track<3> {
     /// The translation or scale at a time.
     pub fn vector(&self, seconds: f64) -> DVec3 {

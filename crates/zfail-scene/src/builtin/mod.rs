@@ -5,9 +5,11 @@
 //! Papers: E&K is Everitt & Kilgard, "Practical and Robust Stenciled Shadow Volumes for Hardware-Accelerated
 //! Rendering", 2002; McGuire et al. is "Fast, Practical and Robust Shadows", 2003; Carmack's letter is of May 2000.
 
+mod anemone;
 mod builder;
 mod cathedral;
 mod container;
+mod foliage;
 mod jail;
 mod lantern;
 mod motion;
@@ -50,6 +52,8 @@ pub const SCENES: &[Entry] = &[
     entry("stacked", "1000 and 256 stacked sheets, more than 8 bits of stencil count (E&K section 4.1)"),
     entry("ortho", "A diorama under an orthographic camera, where infinity has no finite depth"),
     entry("stage", "Three coloured spot lights on dancing figures (McGuire et al., Image 7)"),
+    entry("foliage", "A tree of leaf cards and a wire fence: masked textures that cast shadows of their shape"),
+    entry("anemone", "Skinned tentacles and a morphing pearl: silhouettes of bodies that bend and meet themselves"),
     entry(
         "lantern",
         "A projected stained-glass window, falloff curves and a light in a box (McGuire et al. section 4)",
@@ -76,7 +80,9 @@ pub fn scene(name: &str) -> Option<Scene> {
         "stacked" => stacked::scene(),
         "ortho" => ortho::scene(),
         "stage" => stage::scene(),
+        "foliage" => foliage::scene(),
         "lantern" => lantern::scene(),
+        "anemone" => anemone::scene(),
         _ => return None,
     })
 }
@@ -84,7 +90,7 @@ pub fn scene(name: &str) -> Option<Scene> {
 /// The scene `name` with its animation, if it has one, or `None` if there is no scene of that name.
 #[must_use]
 pub fn animated(name: &str) -> Option<Animated> {
-    scene(name).map(motion::animated)
+    if name == "anemone" { Some(anemone::animated()) } else { scene(name).map(motion::animated) }
 }
 
 #[cfg(test)]

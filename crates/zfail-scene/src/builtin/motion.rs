@@ -68,8 +68,8 @@ pub(super) fn animated(scene: Scene) -> Animated {
     if moves.is_empty() {
         return scene.into();
     }
-    let animation = Animation { name: "turn".into(), duration: PERIOD.into(), moves };
-    Animated { scene, animations: vec![animation], rig }
+    let animation = Animation { name: "turn".into(), duration: PERIOD.into(), moves, ..Animation::default() };
+    Animated { scene, animations: vec![animation], rig, ..Animated::default() }
 }
 
 /// One revolution of a node about the vertical axis through its origin, in four arcs.

@@ -1,20 +1,28 @@
-//! Small tileable images: boards, bricks, tiles, stone, plaster, grass.
+//! Small tileable images: boards, bricks, tiles, stone, plaster, grass, wire; a window and a twig.
 //!
 //! In: sRGB colours `0xRRGGBB`. Out: an [`Image`] of 256 x 256 pixels, the same on every run.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use zfail_plan::scene::Image;
 
 const SIZE: u32 = 256;
 
 /// Fills an image from a function of (u, v) in 0..1, v downwards, that gives sRGB in 0..1.
 fn image(name: &str, color: impl Fn(f64, f64) -> DVec3) -> Image {
+    masked(name, |u, v| (color(u, v), f64::INFINITY))
+}
+
+/// [`image`] with a shape cut out of it: `color` also gives the distance to the shape's rim, above 0 inside. Alpha is one
+/// half on the rim and goes from 0 to 1 over two pixels.
+fn masked(name: &str, color: impl Fn(f64, f64) -> (DVec3, f64)) -> Image {
     let mut rgba = Vec::with_capacity((SIZE * SIZE * 4) as usize);
     for y in 0..SIZE {
         for x in 0..SIZE {
             let at = |k: u32| (f64::from(k) + 0.5) / f64::from(SIZE);
-            let rgb = (color(at(x), at(y)).clamp(DVec3::ZERO, DVec3::ONE) * 255.0).round();
-            rgba.extend([rgb.x as u8, rgb.y as u8, rgb.z as u8, 255]);
+            let (color, depth) = color(at(x), at(y));
+            let rgb = (color.clamp(DVec3::ZERO, DVec3::ONE) * 255.0).round();
+            let alpha = (0.5 + 0.5 * depth * f64::from(SIZE)).clamp(0.0, 1.0) * 255.0;
+            rgba.extend([rgb.x as u8, rgb.y as u8, rgb.z as u8, alpha.round() as u8]);
         }
     }
     Image { name: name.to_owned(), width: SIZE, height: SIZE, rgba }
@@ -138,6 +146,46 @@ pub(super) fn window(name: &str) -> Image {
         let rim = ((1.0 - x.abs()).min(1.0 - y).min(y - top) / 0.05 - 0.6).clamp(0.0, 1.0);
         let pane = (hash(column as u32, row as u32, 41) * GLASS.len() as f64) as usize;
         srgb(GLASS[pane.min(GLASS.len() - 1)]) * (lead * rim)
+    })
+}
+
+/// Two wires that cross, as in a chain-link fence: one mesh across, and a mask.
+pub(super) fn wire(name: &str, thickness: f64, color: u32) -> Image {
+    let radius = 0.5 * thickness;
+    masked(name, |u, v| {
+        let distance = |t: f64| (t - t.round()).abs() * 0.5_f64.sqrt();
+        let [rising, falling] = [distance(u + v), distance(u - v)];
+        let across = rising.min(falling) / radius;
+        // Each lies above the other in turns, and is round.
+        let above = if u < 0.5 { rising } else { falling };
+        let shade = if above < radius { 1.0 } else { 0.75 };
+        (srgb(color) * (shade * (1.1 - 0.5 * across * across).max(0.4)), radius - rising.min(falling))
+    })
+}
+
+/// A twig with leaves on both sides that grows from the bottom to the top, and a mask.
+pub(super) fn twig(name: &str, leaves: u32, color: u32) -> Image {
+    masked(name, |u, v| {
+        let point = DVec2::new(u - 0.5, 1.0 - v);
+        let bend = |y: f64| 0.05 * (3.0 * y).sin();
+        let mut best = (0.006 - (point.x - bend(point.y)).abs().max(point.y - 0.86), srgb(color) * 0.6);
+        for k in 0..leaves {
+            let height = 0.1 + 0.74 * f64::from(k) / f64::from(leaves);
+            let side = if k + 1 == leaves { 0.0 } else { f64::from(k % 2) * 2.0 - 1.0 };
+            let angle = side * (0.75 + 0.35 * hash(k, 0, 43));
+            let length = 0.3 * (1.15 - 0.5 * height) * (0.85 + 0.3 * hash(k, 1, 43));
+            let axis = DVec2::new(angle.sin(), angle.cos());
+            let from_base = point - DVec2::new(bend(height), height);
+            let (along, across) = (from_base.dot(axis) / length, from_base.perp_dot(axis));
+            // Widest before the middle, pointed at the end.
+            let width = 0.3 * length * (along.clamp(0.0, 1.0).powf(0.7) * std::f64::consts::PI).sin();
+            let depth = (width - across.abs()).min(along * length).min((1.0 - along) * length);
+            if depth > best.0 {
+                let vein = joint(along * 6.0 - 14.0 * across.abs() / length, 0.04, 0.1) * joint(across, 0.003, 0.006);
+                best = (depth, srgb(color) * (0.8 + 0.35 * hash(k, 2, 43)) * (0.8 + 0.2 * vein));
+            }
+        }
+        (best.1, best.0)
     })
 }
 

@@ -2,13 +2,14 @@
 //!
 //! In: the document, its node hierarchy and the scene's materials. Out: meshes and instances in the scene.
 
-use super::animations::Motion;
+use super::animations::{Motion, target_count};
 use super::document::Document;
 use super::error::{Result, invalid};
 use super::graph::{Graph, Visit, affine};
 use super::mesh::{self, Built, Pose};
-use super::schema::{self, Instancing};
+use super::schema::Instancing;
 use crate::animate::MAX_COORDINATE;
+use crate::deform::{Body, Frame, Joint};
 use crate::placement::{Rank, flatten, invertible, is_moderate, rank, unit_quaternion};
 use glam::{DAffine3, DQuat, DVec3};
 use rayon::prelude::*;
@@ -24,19 +25,21 @@ pub(super) fn read(
     motion: &mut Motion,
     scene: &mut Scene,
 ) -> Result<Vec<Range<usize>>> {
-    let (poses, pose_of_visit) = poses(document, graph)?;
-    let joints = joints(document, graph)?;
+    let (poses, pose_of_visit) = poses(document, graph, motion)?;
+    let skins = skins(document, graph, motion)?;
     let built: Vec<Built> = poses
         .par_iter()
         .map(|pose| {
-            let joints = pose.skin.map(|skin| joints[skin].as_slice());
-            mesh::build(document, pose, joints, &scene.materials)
+            let skin = pose.skin.map(|skin| &skins[skin]);
+            let bends = pose.node.is_some() || skin.is_some_and(Skin::moves);
+            mesh::build(document, pose, skin.map(|skin| &skin.at_rest[..]), bends, &scene.materials)
         })
         .collect::<Result<_>>()?;
     check_unused(document, &poses)?;
     scene.notices.extend(built.iter().flat_map(|b| b.notices.iter().cloned()));
 
-    let mut placer = Placer { document, motion, scene, scene_mesh: vec![None; built.len()], built };
+    let shown = vec![Vec::new(); built.len()];
+    let mut placer = Placer { document, motion, scene, scene_mesh: vec![None; built.len()], shown, built };
     let mut first_instance = Vec::with_capacity(graph.visits.len() + 1);
     for (visit, pose) in graph.visits.iter().zip(pose_of_visit) {
         first_instance.push(placer.scene.instances.len());
@@ -44,15 +47,15 @@ pub(super) fn read(
             placer.place_node(visit, graph.world_from_node[visit.node], pose, poses[pose].skin.is_some())?;
         }
     }
-    first_instance.push(scene.instances.len());
+    first_instance.push(placer.scene.instances.len());
+    placer.embody(&poses, &skins);
     let held = |(i, visit): (usize, &Visit)| first_instance[i]..first_instance[visit.end];
     Ok(graph.visits.iter().enumerate().map(held).collect())
 }
 
 /// The distinct poses in the order of their meshes in the file, and the index of each visit's.
-fn poses(document: &Document<'_>, graph: &Graph) -> Result<(Vec<Pose>, Vec<Option<usize>>)> {
+fn poses(document: &Document<'_>, graph: &Graph, motion: &Motion) -> Result<(Vec<Pose>, Vec<Option<usize>>)> {
     let meshes = &document.root.meshes;
-    let target_count = |mesh: &schema::Mesh| mesh.primitives.iter().map(|p| p.targets.len()).max().unwrap_or(0);
     let target_counts: Vec<usize> = meshes.iter().map(target_count).collect();
     let pose = |visit: &Visit| {
         let node = &document.root.nodes[visit.node];
@@ -61,37 +64,59 @@ fn poses(document: &Document<'_>, graph: &Graph) -> Result<(Vec<Pose>, Vec<Optio
         let weights = &weights[..target_counts[mesh].min(weights.len())];
         document.budget.charge(weights.len() as u64, 16, || format!("nodes[{}].weights", visit.node))?;
         let weights = weights.iter().map(|w| w.to_bits()).collect();
-        Ok(Some(Pose { mesh, weights, skin: node.skin }))
+        let own = motion.morphs(visit.node).then_some(visit.node);
+        Ok(Some(Pose { mesh, weights, skin: node.skin, node: own }))
     };
     let of_visit: Vec<Option<Pose>> = graph.visits.iter().map(pose).collect::<Result<_>>()?;
     let mut poses: Vec<Pose> = of_visit.iter().flatten().cloned().collect();
-    poses.sort_by(|a, b| (a.mesh, a.skin, &a.weights).cmp(&(b.mesh, b.skin, &b.weights)));
+    poses.sort_by(|a, b| (a.mesh, a.skin, a.node, &a.weights).cmp(&(b.mesh, b.skin, b.node, &b.weights)));
     poses.dedup();
     let index: FxHashMap<&Pose, usize> = poses.iter().enumerate().map(|(i, pose)| (pose, i)).collect();
     let of_visit = of_visit.iter().map(|pose| pose.as_ref().map(|pose| index[pose])).collect();
     Ok((poses, of_visit))
 }
 
-/// Per skin and joint, the transform from mesh space to the world in the rest pose.
-fn joints(document: &Document<'_>, graph: &Graph) -> Result<Vec<Vec<DAffine3>>> {
+/// The joints of a skin.
+struct Skin {
+    /// From mesh space to the world, in the rest pose.
+    at_rest: Vec<DAffine3>,
+    joints: Vec<Joint>,
+}
+
+impl Skin {
+    fn moves(&self) -> bool {
+        self.joints.iter().any(|joint| matches!(joint, Joint::Moving { .. }))
+    }
+}
+
+fn skins(document: &Document<'_>, graph: &Graph, motion: &Motion) -> Result<Vec<Skin>> {
     let skins = document.root.skins.iter().enumerate().map(|(s, skin)| {
-        let size = size_of::<DAffine3>() as u64;
+        let size = (size_of::<DAffine3>() * 2 + size_of::<Joint>()) as u64;
         document.budget.charge(skin.joints.len() as u64, size, || format!("skins[{s}].joints"))?;
-        let Some(accessor) = skin.inverse_bind_matrices else {
-            return Ok(skin.joints.iter().map(|&j| graph.world_from_node[j]).collect());
+        let inverse_binds = match skin.inverse_bind_matrices {
+            None => vec![DAffine3::IDENTITY; skin.joints.len()],
+            Some(accessor) => inverse_binds(document, accessor, &format!("skins[{s}].inverseBindMatrices"))?,
         };
-        let inverse_binds = document.floats::<16>(accessor)?;
-        let joint = |(j, (&node, m)): (usize, (&usize, &[f32; 16]))| {
-            let inverse_bind = affine(&m.map(f64::from)).filter(is_moderate).ok_or_else(|| {
-                let problem =
-                    format!("matrix {j} (accessors[{accessor}]) is not finite, or its last row is not 0 0 0 1");
-                invalid(format!("skins[{s}].inverseBindMatrices"), problem)
-            })?;
-            Ok(graph.world_from_node[node] * inverse_bind)
+        let joint = |(&node, node_from_mesh): (&usize, DAffine3)| {
+            let at_rest = graph.world_from_node[node] * node_from_mesh;
+            let moving = motion.rig_node[node].map(|node| Joint::Moving { node, node_from_mesh });
+            (at_rest, moving.unwrap_or(Joint::Fixed(at_rest)))
         };
-        skin.joints.iter().zip(&inverse_binds).enumerate().map(joint).collect()
+        let (at_rest, joints) = skin.joints.iter().zip(inverse_binds).map(joint).unzip();
+        Ok(Skin { at_rest, joints })
     });
     skins.collect()
+}
+
+fn inverse_binds(document: &Document<'_>, accessor: usize, path: &str) -> Result<Vec<DAffine3>> {
+    let matrices = document.floats::<16>(accessor)?;
+    let matrix = |(j, m): (usize, &[f32; 16])| {
+        affine(&m.map(f64::from)).filter(is_moderate).ok_or_else(|| {
+            let problem = format!("matrix {j} (accessors[{accessor}]) is not finite, or its last row is not 0 0 0 1");
+            invalid(path, problem)
+        })
+    };
+    matrices.iter().enumerate().map(matrix).collect()
 }
 
 fn check_unused(document: &Document<'_>, poses: &[Pose]) -> Result<()> {
@@ -107,6 +132,8 @@ struct Placer<'a> {
     built: Vec<Built>,
     /// Where in the scene a built mesh has been moved, once an instance has needed it.
     scene_mesh: Vec<Option<usize>>,
+    /// Instances of each built mesh.
+    shown: Vec<Vec<usize>>,
 }
 
 /// Where a node puts its mesh.
@@ -151,8 +178,13 @@ impl Placer<'_> {
         if !(reach.min.abs().max_element() <= MAX_COORDINATE && reach.max.abs().max_element() <= MAX_COORDINATE) {
             return Err(invalid(element(), format!("places its mesh more than {MAX_COORDINATE:e} m from the origin")));
         }
+        let bends = !self.built[site.pose].sections.is_empty();
         let (mesh, world_from_object) = match (rank(&world_from_object.matrix3), site.rig_node) {
             (Rank::Full, None) => (self.scene_mesh(site.pose), world_from_object),
+            (_, None) if bends => {
+                let matrix3 = invertible(&world_from_object.matrix3);
+                (self.scene_mesh(site.pose), DAffine3 { matrix3, translation: world_from_object.translation })
+            }
             (_, Some(rig_node)) => {
                 // It may be flat at rest and have its shape later.
                 let matrix3 = invertible(&world_from_object.matrix3);
@@ -175,8 +207,26 @@ impl Placer<'_> {
             }
         };
         let casts_shadow = site.visit.casts_shadow;
+        self.shown[site.pose].push(self.scene.instances.len());
         self.scene.instances.push(Instance { name, mesh, world_from_object, casts_shadow });
         Ok(())
+    }
+
+    /// Hands what bends to the animation, once all instances are placed.
+    fn embody(&mut self, poses: &[Pose], skins: &[Skin]) {
+        for (p, pose) in poses.iter().enumerate() {
+            let Built { sections, origin, .. } = &mut self.built[p];
+            let Some(mesh) = self.scene_mesh[p].filter(|_| !sections.is_empty()) else { continue };
+            let frame = match pose.skin {
+                None => Frame::Object { origin: *origin },
+                Some(skin) => {
+                    Frame::Skin { joints: skins[skin].joints.clone(), instances: std::mem::take(&mut self.shown[p]) }
+                }
+            };
+            let weights = pose.weights.iter().map(|&bits| f64::from_bits(bits)).collect();
+            let (sections, cuts) = (std::mem::take(sections), Vec::new());
+            self.motion.bodies.push((Body { mesh, sections, cuts, weights, frame }, pose.node));
+        }
     }
 
     fn scene_mesh(&mut self, pose: usize) -> usize {

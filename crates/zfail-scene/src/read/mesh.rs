@@ -1,7 +1,7 @@
-//! One scene mesh from one glTF mesh: its primitives posed, completed and put one after the other.
+//! One scene mesh from one glTF mesh: its primitives completed, posed and put one after the other.
 //!
-//! In: a mesh of a validated document, its morph weights and, if skinned, its joints. Out: a [`Mesh`] near its own
-//! origin and the translation that puts it back.
+//! In: a mesh of a validated document, its morph weights and, if skinned, its joints. Out: a [`Mesh`] at rest, near its own
+//! origin, the translation that puts it back, and if it bends what other poses are made from.
 
 use super::document::Document;
 use super::error::{Result, invalid};
@@ -9,6 +9,7 @@ use super::schema::{self, Mode};
 use super::surface::{Surface, read_triangles};
 use super::{pose, shading};
 use crate::animate::MAX_COORDINATE;
+use crate::deform::{Section, alike};
 use crate::placement::{localize, recenter};
 use glam::{DAffine3, DVec2, DVec3};
 use zfail_plan::scene::{Bounds, Material, Mesh, Primitive, TextureRef};
@@ -22,6 +23,8 @@ pub(super) struct Pose {
     pub weights: Vec<u64>,
     /// Index into the document's skins.
     pub skin: Option<usize>,
+    /// The node, if animations change its morph weights: no other has the same then.
+    pub node: Option<usize>,
 }
 
 /// A mesh ready for the scene.
@@ -32,35 +35,39 @@ pub(super) struct Built {
     pub origin: DVec3,
     /// Of the mesh, without the origin.
     pub bounds: Bounds,
+    /// Of a mesh that bends.
+    pub sections: Vec<Section>,
     pub notices: Vec<String>,
 }
 
 /// Bytes that a vertex occupies while its mesh is built: the attributes twice over, in both precisions.
 const VERTEX_COST: u64 = 200;
 
-/// Builds the mesh for `pose`. `joints` take the mesh's space to the world.
+/// Builds the mesh for `pose`. `joints` take the mesh's space to the world; `bends` tells whether anything moves them or the
+/// morph weights.
 pub(super) fn build(
     document: &Document<'_>,
     pose: &Pose,
     joints: Option<&[DAffine3]>,
+    bends: bool,
     materials: &[Material],
 ) -> Result<Built> {
     let source = &document.root.meshes[pose.mesh];
     let name = source.name.clone().unwrap_or_else(|| format!("mesh {}", pose.mesh));
     let weights: Vec<f64> = pose.weights.iter().map(|&bits| f64::from_bits(bits)).collect();
-    let mut assembly = Assembly { joints, ..Assembly::new(document, materials, &weights) };
+    let mut assembly = Assembly { joints, bends, ..Assembly::new(document, materials, &weights) };
     for (j, primitive) in source.primitives.iter().enumerate() {
         assembly.append(primitive, &format!("meshes[{}].primitives[{j}]", pose.mesh))?;
     }
     let notices = assembly.counts.notices(&name);
-    let (mesh, origin) = assembly.finish(name);
+    let (mesh, origin, sections) = assembly.finish(name);
     if mesh.positions.iter().flatten().any(|&x| f64::from(x).abs() > MAX_COORDINATE) || origin.length() > MAX_COORDINATE
     {
         let problem = format!("reaches more than {MAX_COORDINATE:e} m from its origin");
         return Err(invalid(format!("meshes[{}]", pose.mesh), problem));
     }
     let bounds = mesh.bounds();
-    Ok(Built { mesh, origin, bounds, notices })
+    Ok(Built { mesh, origin, bounds, sections, notices })
 }
 
 /// Checks the indices of a mesh that no node uses, as if it were built.
@@ -78,8 +85,10 @@ struct Assembly<'a> {
     materials: &'a [Material],
     weights: &'a [f64],
     joints: Option<&'a [DAffine3]>,
+    bends: bool,
     positions: Vec<DVec3>,
     mesh: Mesh,
+    sections: Vec<Section>,
     counts: Counts,
 }
 
@@ -114,8 +123,8 @@ impl Counts {
 
 impl<'a> Assembly<'a> {
     fn new(document: &'a Document<'a>, materials: &'a [Material], weights: &'a [f64]) -> Self {
-        let (positions, mesh, counts) = Default::default();
-        Self { document, materials, weights, joints: None, positions, mesh, counts }
+        let (positions, mesh, sections, counts) = Default::default();
+        Self { document, materials, weights, joints: None, bends: false, positions, mesh, sections, counts }
     }
 
     fn append(&mut self, primitive: &schema::Primitive, path: &str) -> Result<()> {
@@ -136,11 +145,12 @@ impl<'a> Assembly<'a> {
         let count = self.document.root.accessors[positions].count;
         self.document.budget.charge(count, VERTEX_COST, || path.into())?;
         let mut surface = Surface::read(self.document, primitive, positions, path)?;
-        pose::morph(self.document, primitive, self.weights, &mut surface, path)?;
-        if let Some(joints) = self.joints
-            && !pose::skin(self.document, primitive, joints, &mut surface, path)?
-        {
-            self.counts.unskinned += 1;
+        let mut section = Section { flat: surface.normals.is_none(), ..Section::default() };
+        let weight = |t: usize| self.weights.get(t).copied().unwrap_or(0.0);
+        section.targets = pose::targets(self.document, primitive, |t| self.bends || weight(t) != 0.0)?;
+        if let Some(joints) = self.joints {
+            section.influences = pose::influences(self.document, primitive, joints.len(), path)?;
+            self.counts.unskinned += usize::from(section.influences.is_none());
         }
         let normals = match surface.normals.take() {
             Some(mut normals) => {
@@ -149,7 +159,7 @@ impl<'a> Assembly<'a> {
             }
             None => {
                 self.document.budget.charge(surface.triangles.len() as u64, 3 * VERTEX_COST, || path.into())?;
-                surface.unshare();
+                section.gather(&surface.unshare());
                 // The specification has given tangents ignored along with missing normals.
                 surface.tangents = None;
                 shading::flat_normals(&surface)
@@ -157,18 +167,13 @@ impl<'a> Assembly<'a> {
         };
         self.counts.attributes += mend_attributes(&mut surface);
         let normal_map = primitive.material.and_then(|m| self.materials[m].normal_texture);
-        let tangents = tangents(&surface, &normals, normal_map);
-        self.push(surface, &normals, tangents, primitive.material, path)
+        section.tangents = tangents(&surface, &normals, normal_map);
+        section.positions = surface.positions.iter().map(|p| p.as_vec3().to_array()).collect();
+        section.normals = normals.iter().map(|n| n.as_vec3().to_array()).collect();
+        self.push(surface, section, primitive.material, path)
     }
 
-    fn push(
-        &mut self,
-        surface: Surface,
-        normals: &[DVec3],
-        tangents: Vec<[f32; 4]>,
-        material: Option<usize>,
-        path: &str,
-    ) -> Result<()> {
+    fn push(&mut self, surface: Surface, section: Section, material: Option<usize>, path: &str) -> Result<()> {
         let count = surface.positions.len();
         let (first_vertex, first_triangle) = (self.positions.len(), self.mesh.triangles.len());
         let (Ok(first_vertex), Ok(_)) = (u32::try_from(first_vertex), u32::try_from(first_vertex + count)) else {
@@ -183,26 +188,39 @@ impl<'a> Assembly<'a> {
         if start < end {
             mesh.primitives.push(Primitive { triangles: start..end, material });
         }
-        self.positions.extend(surface.positions);
-        mesh.normals.extend(normals.iter().map(|n| n.as_vec3().to_array()));
-        mesh.tangents.extend(tangents);
+        let end = self.positions.len() + count;
+        self.positions.resize(end, DVec3::ZERO);
+        mesh.normals.resize(end, [0.0; 3]);
+        mesh.tangents.resize(end, [0.0; 4]);
+        let positions = &mut self.positions[end - count..];
+        let (normals, tangents) = (&mut mesh.normals[end - count..], &mut mesh.tangents[end - count..]);
+        section.pose(self.weights, self.joints.unwrap_or_default(), positions, normals, tangents);
+        if let Some(v) = positions.iter().position(|p| !p.is_finite()) {
+            return Err(invalid(path, format!("vertex {v}: its morph targets or joints take it to infinity")));
+        }
         let [uv0, uv1] = surface.uv.map(|uv| uv.unwrap_or_else(|| vec![[0.0; 2]; count]));
         mesh.uv0.extend(uv0);
         mesh.uv1.extend(uv1);
         mesh.colors.extend(surface.colors.unwrap_or_else(|| vec![[1.0; 4]; count]));
+        if self.bends {
+            self.sections.push(section);
+        }
         Ok(())
     }
 
-    fn finish(self, name: String) -> (Mesh, DVec3) {
+    fn finish(self, name: String) -> (Mesh, DVec3, Vec<Section>) {
         let mut mesh = Mesh { name, ..self.mesh };
+        if self.bends {
+            mesh.alike = alike(&self.sections);
+        }
         if self.joints.is_some() {
             let (origin, positions) = localize(&self.positions);
             mesh.positions = positions;
-            return (mesh, origin);
+            return (mesh, origin, self.sections);
         }
         mesh.positions = self.positions.iter().map(|p| p.as_vec3().to_array()).collect();
         let origin = recenter(&mut mesh);
-        (mesh, origin)
+        (mesh, origin, self.sections)
     }
 }
 

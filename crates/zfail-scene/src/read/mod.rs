@@ -2,7 +2,7 @@
 //!
 //! Data flow one way: `container` (bytes to JSON and binary chunk) -> `schema` (typed JSON) -> `extensions` and
 //! `validate` (nothing is trusted before) -> `document` (buffers and accessors) -> `images`, `materials`
-//! -> `graph` (world transforms) -> `animations` -> `surface` -> `pose` -> `shading` -> `mesh` -> `instances`, `lights`.
+//! -> `graph` (world transforms) -> `animations` -> `surface` -> `shading` -> `pose` -> `mesh` -> `instances`, `lights`.
 //!
 //! Whatever the bytes are, the result is a scene that satisfies the scene types' invariants or a [`LoadError`]; what
 //! was repaired or left out is in [`Scene::notices`].
@@ -10,18 +10,17 @@
 //! # Repairs
 //! - Left out: points and lines, primitives without positions, what remains of a triangle list after the last whole
 //!   triangle, meshes that a node's scale shrinks to a line or a point, images other than PNG and JPEG or damaged
-//!   inside, every extension that only changes looks, animations of morph weights, of what extensions add and of nodes
-//!   that have a matrix.
+//!   inside, every extension that only changes looks, animations of what extensions add and of nodes that have a matrix.
 //! - Replaced: missing normals (flat ones, on vertices of their own) and those without a direction, texture
 //!   coordinates and colours that are not finite, rotations without length, joint weights that do not add up to 1.
 //! - Approximated: specular-glossiness (diffuse colour alone) and transmission (blending).
 //! - Tolerated: a byte order mark, misaligned accessors, missing bounds of accessors, bytes after the end, a mesh or
 //!   a skin that nothing uses, key frames before time 0 and two at the same time.
-//! - Baked into meshes of their own, in world space: skins (in their rest pose, morph targets at their default
-//!   weights) and meshes that their node flattens into a plane.
+//! - Baked into meshes of their own, in world space: skins (at rest, until an animation bends them) and meshes that their
+//!   node flattens into a plane.
 //! - Moved: a mesh far from its own origin, exactly, with the translation in its instances.
 //! - While an animation flattens a mesh or makes it vanish, it keeps an invisible thickness, so that transforms stay
-//!   invertible; what an animation takes beyond 10^15 m stays at its place of rest meanwhile.
+//!   invertible; what an animation takes beyond 10^15 m stays at its place of rest, or in its rest pose, meanwhile.
 //!
 //! # Extras
 //! What glTF has no word for, in the extras of nodes:
@@ -47,6 +46,7 @@ mod error;
 mod extensions;
 mod graph;
 mod images;
+mod info;
 mod instances;
 mod lights;
 mod limits;
@@ -60,6 +60,7 @@ mod uri;
 mod validate;
 
 pub use error::{Fault, LoadError};
+pub use info::{ChannelInfo, FileInfo, MorphInfo, SkinInfo};
 pub use limits::Limits;
 
 use crate::animate::Animated;
@@ -72,27 +73,6 @@ use std::fs;
 use std::io;
 use std::path::Path;
 use zfail_plan::scene::Scene;
-
-/// What a file says about itself, beyond the scene that was made of it.
-#[derive(Clone, Debug, Default)]
-pub struct FileInfo {
-    /// `asset.version`.
-    pub version: String,
-    /// The program that wrote the file.
-    pub generator: Option<String>,
-    /// Extensions that the file uses, required or not.
-    pub extensions_used: Vec<String>,
-    /// Extensions that the file declares indispensable.
-    pub extensions_required: Vec<String>,
-    /// Number of skins.
-    pub skins: usize,
-    /// Meshes in the file, including those outside the default scene.
-    pub meshes: usize,
-    /// Nodes in the file, including those outside the default scene.
-    pub nodes: usize,
-    /// Meshes with morph targets.
-    pub morphed_meshes: usize,
-}
 
 /// Loads the default scene of a `.glb` or `.gltf` file.
 ///
@@ -214,21 +194,5 @@ fn tidy(notices: &mut Vec<String>) {
         let more = notices.len() - MAX_NOTICES;
         notices.truncate(MAX_NOTICES);
         notices.push(format!("... and {more} more"));
-    }
-}
-
-impl FileInfo {
-    fn of(root: &Root) -> Self {
-        let morphed = |mesh: &&schema::Mesh| mesh.primitives.iter().any(|p| !p.targets.is_empty());
-        Self {
-            version: root.asset.version.clone(),
-            generator: root.asset.generator.clone(),
-            extensions_used: root.extensions_used.clone(),
-            extensions_required: root.extensions_required.clone(),
-            skins: root.skins.len(),
-            meshes: root.meshes.len(),
-            nodes: root.nodes.len(),
-            morphed_meshes: root.meshes.iter().filter(morphed).count(),
-        }
     }
 }

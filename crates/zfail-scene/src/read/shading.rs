@@ -3,17 +3,11 @@
 //! In: a posed `Surface`. Out: one unit normal and one tangent (or zero) per vertex.
 
 use super::surface::Surface;
+use crate::placement::unit_vector;
 use glam::{DVec2, DVec3, DVec4};
 
 /// Shorter vectors have no direction worth keeping.
 const LEAST_LENGTH: f64 = 1e-12;
-
-/// Vectors whose squared length is this near to 1 are unit vectors in single precision, and stay bit for bit.
-const UNIT_ROUNDING: f64 = 1e-6;
-
-fn normalized(v: DVec3) -> Option<DVec3> {
-    if (v.length_squared() - 1.0).abs() < UNIT_ROUNDING { Some(v) } else { v.try_normalize() }
-}
 
 /// Flat normals. Vertices must not be shared between triangles.
 pub(super) fn flat_normals(surface: &Surface) -> Vec<DVec3> {
@@ -44,7 +38,7 @@ pub(super) fn mend_normals(surface: &Surface, normals: &mut [DVec3]) -> usize {
             }
         }
     }
-    normals.iter_mut().for_each(|n| *n = normalized(*n).unwrap_or(DVec3::Y));
+    normals.iter_mut().for_each(|n| *n = unit_vector(*n).unwrap_or(DVec3::Y));
     broken
 }
 
@@ -52,7 +46,7 @@ pub(super) fn mend_normals(surface: &Surface, normals: &mut [DVec3]) -> usize {
 pub(super) fn mend_tangents(tangents: &[DVec4]) -> Vec<[f32; 4]> {
     let mend = |t: &DVec4| {
         let sign = if t.w < 0.0 { -1.0 } else { 1.0 };
-        let direction = normalized(t.truncate());
+        let direction = unit_vector(t.truncate());
         direction.map_or([0.0; 4], |d| d.extend(sign).as_vec4().to_array())
     };
     tangents.iter().map(mend).collect()

@@ -35,8 +35,8 @@ impl Surface {
         })
     }
 
-    /// Gives every triangle three vertices of its own.
-    pub fn unshare(&mut self) {
+    /// Gives every triangle three vertices of its own; returns which vertices they were.
+    pub fn unshare(&mut self) -> Vec<u32> {
         let corners: Vec<u32> = self.triangles.iter().flatten().copied().collect();
         gather(&mut self.positions, &corners);
         let Self { normals, tangents, uv, colors, .. } = self;
@@ -47,6 +47,7 @@ impl Surface {
         for (i, triangle) in (0u32..).zip(&mut self.triangles) {
             *triangle = [3 * i, 3 * i + 1, 3 * i + 2];
         }
+        corners
     }
 }
 

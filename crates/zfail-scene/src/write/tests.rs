@@ -4,8 +4,8 @@ use super::{WriteError, check, to_glb};
 use crate::builtin::shapes::{cuboid, merged, painted, tinted, uv_sphere};
 use glam::{DAffine3, DMat3, DVec3};
 use zfail_plan::scene::{
-    AlphaMode, Camera, Filter, Image, Instance, Light, LightKind, LightShape, Material, Mesh, Scene, Texture,
-    TextureRef, Wrap,
+    AlphaMode, Camera, Filter, Image, Instance, Light, LightKind, LightShape, MaskCasting, Material, Mesh, Scene,
+    Texture, TextureRef, Wrap,
 };
 use zfail_plan::view::Projection;
 
@@ -125,9 +125,11 @@ fn sampler() -> Scene {
             camera("lens", Projection::Perspective { yfov: 0.9, near: 0.07, far: None }),
             camera("map", Projection::Orthographic { ymag: 3.3, near: 0.0, far: 50.0 }),
         ],
+        mask_casting: MaskCasting::default(),
         ambient: [0.1, 0.2, 0.3],
         background: [0.3, 0.2, 0.1],
         notices: vec![],
+        ..Scene::default()
     }
 }
 

@@ -244,7 +244,7 @@ fn what_cannot_be_animated_is_left_out_with_a_notice() {
     let target = |g: &mut Gltf, target: Value| g.json["animations"][0]["channels"][0]["target"] = target;
     assert_eq!(
         notices(&|g| target(g, json!({"node": 0, "path": "weights"}))),
-        ["morph targets are not animated: they keep their default weights"]
+        ["animations[0].channels[0] would change the morph weights of nodes[0], which has none: left out"]
     );
     assert_eq!(
         notices(&|g| target(g, json!({"path": "pointer"}))),
@@ -262,17 +262,6 @@ fn what_cannot_be_animated_is_left_out_with_a_notice() {
         g.json["scenes"] = json!([{"nodes": [1]}]);
     });
     assert!(elsewhere.is_empty(), "{elsewhere:?}");
-}
-
-#[test]
-fn skins_rest_while_their_joints_move() {
-    let mut gltf = sliding();
-    gltf.json["skins"] = json!([{"joints": [0]}]);
-    let animated = gltf.animated();
-    assert_eq!(animated.scene.notices, ["skinned meshes stay in their rest pose"]);
-    assert!(animated.animations[0].moves_anything(), "the joint carries a mesh as well");
-    gltf.json["nodes"] = json!([{}, {"mesh": 0, "skin": 0}]);
-    assert!(!gltf.animated().animations[0].moves_anything());
 }
 
 #[test]

@@ -1,0 +1,77 @@
+//! `zfail render`: one frame of a scene as files, or many.
+//!
+//! Data flow: `destinations` (where everything goes) -> `results` (a rendered frame, encoded) -> [`crate::output`].
+//! `sequence` does so for numbered frames, and `seal` tells it which of them are there already.
+
+mod destinations;
+mod results;
+mod seal;
+mod sequence;
+
+pub use results::picture_file;
+
+use crate::args;
+use crate::console;
+use crate::error::Error;
+use crate::input;
+use crate::output::{self, Outputs};
+use destinations::Destinations;
+use results::Results;
+use zfail_render::{RenderError, Renderer, Settings};
+
+/// Renders what is asked for.
+///
+/// # Errors
+/// If an argument names nothing in the scene, the scene or the device fails, or a file cannot be written.
+pub fn run(args: &args::Render) -> Result<(), Error> {
+    match &args.sequence.frames {
+        Some(frames) => sequence::run(args, frames.0.clone()),
+        None => still(args),
+    }
+}
+
+/// Checks everything that can be checked, renders, encodes, and only then writes.
+fn still(args: &args::Render) -> Result<(), Error> {
+    let destinations = Destinations::new(args, None)?;
+    destinations.check(&args.aovs, false)?;
+    destinations.folders(&args.aovs).for_each(output::sweep);
+    let scene = input::at_moment(input::complete(&args.scene.scene, &args.scene.loading)?, &args.moment)?;
+    console::notices(&scene.notices, args.verbosity.quiet);
+    let camera = input::camera(&scene, &args.camera)?;
+    let view = scene.cameras[camera].view(args.size.0, &scene.bounds());
+    let lights = input::lights(&scene, &args.lights)?;
+    let settings = settings(args, &lights);
+
+    let progress = console::progress(4, args.verbosity.quiet || args.aovs.is_empty());
+    let gpu = input::gpu(&args.device)?;
+    let mut renderer = Renderer::new(&gpu, &scene).map_err(|e| failed(&e))?;
+    progress.inc(1);
+    progress.set_message("rendering");
+    let results = Results::new(&mut renderer, &view, &settings, &args.aovs, &progress)?;
+    progress.set_message("writing");
+
+    let mut outputs = Outputs::default();
+    for (path, bytes) in destinations.sides(&args.aovs, &lights).into_iter().zip(results.sides(args)?) {
+        outputs.add(path, bytes);
+    }
+    let format = args.output.format;
+    let picture = results::encode_pixels(args.size.0, &results.pixels(format), format, None)?;
+    outputs.add(destinations.picture, picture);
+    outputs.commit()
+}
+
+fn settings(args: &args::Render, lights: &[usize]) -> Settings {
+    Settings {
+        technique: args.technique,
+        samples: args.samples,
+        shadows: !args.no_shadows,
+        lights: Some(lights.to_vec()),
+        exposure: args.exposure,
+        ..Settings::default()
+    }
+}
+
+/// What the renderer says, as the program says it.
+pub fn failed(error: &RenderError) -> Error {
+    Error::failed(input::chain(error))
+}

@@ -1,0 +1,115 @@
+//! What one frame yields, and its files.
+//!
+//! In: a renderer and a view. Out: the bytes of the picture and of the files beside it.
+
+use super::failed;
+use crate::args::{self, Aov, Format};
+use crate::encode;
+use crate::error::Error;
+use indicatif::ProgressBar;
+use zfail_plan::view::View;
+use zfail_render::{AovKind, Aovs, FrameStats, Picture, Renderer, Settings};
+
+/// A rendered frame.
+pub struct Results {
+    picture: Picture,
+    stats: FrameStats,
+    aovs: Aovs,
+}
+
+impl Results {
+    /// Renders the picture and whatever else is asked for, a step of `progress` each.
+    ///
+    /// # Errors
+    /// If the renderer or the device fails.
+    pub fn new(
+        renderer: &mut Renderer<'_>,
+        view: &View,
+        settings: &Settings,
+        aovs: &[Aov],
+        progress: &ProgressBar,
+    ) -> Result<Self, Error> {
+        let (picture, stats) = renderer.picture(view, settings).map_err(|e| failed(&e))?;
+        progress.inc(1);
+        let kinds: Vec<AovKind> = aovs.iter().map(|aov| aov.kind).collect();
+        let aovs = match &kinds[..] {
+            [] => Aovs::default(),
+            kinds => renderer.aovs(view, settings, kinds).map_err(|e| failed(&e))?,
+        };
+        progress.inc(1);
+        Ok(Self { picture, stats, aovs })
+    }
+
+    /// The pixels of the picture's file as bytes.
+    pub fn pixels(&self, format: Format) -> Vec<u8> {
+        pixels(&self.picture, format)
+    }
+
+    /// The files beside the picture, in the order of [`super::destinations::Destinations::sides`].
+    ///
+    /// # Errors
+    /// If an encoder refuses.
+    pub fn sides(&self, args: &args::Render) -> Result<Vec<Vec<u8>>, Error> {
+        let mut sides = Vec::new();
+        for aov in &args.aovs {
+            sides.extend(aov_files(aov, &self.aovs)?);
+        }
+        if args.stats.is_some() {
+            sides.push(stats_file(&self.stats)?);
+        }
+        Ok(sides)
+    }
+}
+
+fn pixels(picture: &Picture, format: Format) -> Vec<u8> {
+    match format {
+        Format::Png => encode::rgb8(&picture.rgba8),
+        Format::Exr => encode::rgb32f(picture.hdr.iter().copied()),
+    }
+}
+
+/// The picture as the bytes of a file.
+///
+/// # Errors
+/// If the encoder refuses.
+pub fn picture_file(picture: &Picture, format: Format) -> Result<Vec<u8>, Error> {
+    encode_pixels(picture.size, &pixels(picture, format), format, None)
+}
+
+/// The bytes of [`Results::pixels`] as a file that bears `seal`.
+///
+/// # Errors
+/// If the encoder refuses.
+pub fn encode_pixels(size: [u32; 2], pixels: &[u8], format: Format, seal: Option<&str>) -> Result<Vec<u8>, Error> {
+    match format {
+        Format::Png => encode::png_picture(size, pixels, seal),
+        Format::Exr => encode::exr_rgb(size, pixels, seal),
+    }
+}
+
+/// The file of one AOV, or its files, one per light.
+fn aov_files(aov: &Aov, aovs: &Aovs) -> Result<Vec<Vec<u8>>, Error> {
+    let size = aovs.size;
+    let masks = |masks: &[Vec<u8>]| masks.iter().map(|mask| encode::png_grey(size, mask)).collect();
+    let exr = |values: &[[f32; 3]]| encode::exr_rgb(size, &encode::rgb32f(values.iter().copied()), None);
+    let file = match (aov.kind, aov.format) {
+        (AovKind::Shadow, _) => return masks(&aovs.shadow),
+        (AovKind::Stencil, _) => return masks(&aovs.stencil),
+        (AovKind::Depth, _) => encode::exr_scalar(size, &aovs.depth)?,
+        (AovKind::Position, _) => exr(&aovs.position)?,
+        (AovKind::Normal, Format::Exr) => exr(&aovs.normal)?,
+        (AovKind::Normal, Format::Png) => encode::png_rgb(size, aovs.normal.iter().map(|n| n.map(|c| 0.5 * c + 0.5)))?,
+        (AovKind::Albedo, Format::Exr) => exr(&aovs.albedo)?,
+        (AovKind::Albedo, Format::Png) => {
+            encode::png_rgb(size, aovs.albedo.iter().map(|a| a.map(encode::srgb_from_linear)))?
+        }
+    };
+    Ok(vec![file])
+}
+
+fn stats_file(stats: &FrameStats) -> Result<Vec<u8>, Error> {
+    let mut json =
+        serde_json::to_vec_pretty(stats).map_err(|e| Error::failed(format!("cannot encode the stats: {e}")))?;
+    json.push(b'\n');
+    Ok(json)
+}
