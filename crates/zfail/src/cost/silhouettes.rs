@@ -68,3 +68,29 @@ fn measure_ring(device: &Device, queue: &Queue, [along, around]: [u32; 2], silho
     }
     Some(least)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_ways_are_measured() {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        let Ok(adapter) = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())) else {
+            println!("skipped: no graphics adapter found");
+            return;
+        };
+        let (device, queue) =
+            pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default())).expect("device");
+        let start = Instant::now();
+        let model = measure(&device, &queue, CostModel::RASTERISE).expect("times");
+        println!("{model:?}, found in {:?}", start.elapsed());
+        assert!(model.cpu_triangle_ns > 0.0 && model.gpu_triangle_ns > 0.0);
+        // Where nothing was measured, nothing is asked of the device.
+        assert!(!CostModel::RASTERISE.may_extract(1 << 30));
+        // The larger the caster, the more the cheaper triangle matters.
+        let quick = CostModel { gpu_triangle_ns: 0.5 * model.cpu_triangle_ns, gpu_caster_ns: 1e6, ..model };
+        let least = (2e6 / model.cpu_triangle_ns) as usize;
+        assert!(!quick.may_extract(least / 2) && quick.may_extract(2 * least));
+    }
+}

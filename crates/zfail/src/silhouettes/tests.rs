@@ -91,66 +91,83 @@ fn read(device: &Device, queue: &Queue, buffer: &Buffer) -> Vec<u32> {
     bytemuck::pod_collect_to_vec(&mapped)
 }
 
-/// What the device lists, with an incidence that `tamper` may change.
-fn listed(
-    (device, queue): &(Device, Queue),
-    topology: &Topology,
-    light: Vec4,
-    castings: &[Casting],
-    dark_cap: DarkCap,
-    tamper: impl FnOnce(&mut Incidence),
-) -> Triangles {
-    let mut arena = Arena::new(device);
-    // Not the first in the buffer.
-    arena.add(device, queue, soup(1)).expect("room");
-    let (slot, serial, _) = arena.add(device, queue, topology.clone()).expect("room");
-    let mut silhouettes = Silhouettes::new(device);
-    let mut incidence = Incidence::new(topology);
-    tamper(&mut incidence);
-    silhouettes.meshes.insert(serial, MeshBuffers::of(device, incidence));
-    let extraction = Extraction {
-        light: 3,
-        mesh: serial,
-        castings: 0..castings.len() as u32,
-        sides: true,
-        dark_cap,
-        light_cap: LightCap::Whole,
-    };
-    let draw = Draw {
-        caster: 5,
-        light,
-        cap: Vec4::ZERO,
-        z_pass: false,
-        near_layers: 0,
-        scissor: [0; 4],
-        volume: Volume::default(),
-        extraction: Some(extraction),
-        mirrored: false,
-    };
-    let plan = FramePlan { castings: castings.to_vec(), draws: vec![draw], ..FramePlan::default() };
-    let entry = BindGroupLayoutEntry {
-        binding: 0,
-        visibility: ShaderStages::VERTEX,
-        ty: BindingType::Buffer {
-            ty: BufferBindingType::Storage { read_only: true },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
-    };
-    let volume = device.create_bind_group_layout(&BindGroupLayoutDescriptor {
-        label: None,
-        entries: &[entry, BindGroupLayoutEntry { binding: 1, ..entry }],
-    });
-    let caster = |_: &Draw| Some((arena.get(slot, serial)?, DrawRecord::zeroed()));
-    silhouettes.extract(device, queue, &volume, &arena, &plan, caster);
-    let lists = &silhouettes.lists[&(3, 5)];
-    let (indices, draws) = (read(device, queue, &lists.indices), read(device, queue, &lists.draws));
-    [0, 1, 2].map(|list| {
-        let &[count, instances, first, base, first_instance] = &draws[5 * list..5 * list + 5] else { unreachable!() };
-        assert_eq!([instances, base, first_instance], [1, 2 * arena.get(slot, serial).expect("mesh").first, 0]);
-        sorted(&indices[first as usize..(first + count) as usize])
-    })
+/// A device with one mesh of interest, not the first in its buffer.
+struct Bench<'a> {
+    device: &'a Device,
+    queue: &'a Queue,
+    arena: Arena,
+    slot: usize,
+    serial: u64,
+    silhouettes: Silhouettes,
+    volume: BindGroupLayout,
+}
+
+impl<'a> Bench<'a> {
+    fn new((device, queue): &'a (Device, Queue), topology: &Topology) -> Self {
+        let mut arena = Arena::new(device);
+        arena.add(device, queue, soup(1)).expect("room");
+        let (slot, serial, _) = arena.add(device, queue, topology.clone()).expect("room");
+        let entry = |binding| BindGroupLayoutEntry {
+            binding,
+            visibility: ShaderStages::VERTEX,
+            ty: BindingType::Buffer {
+                ty: BufferBindingType::Storage { read_only: true },
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            },
+            count: None,
+        };
+        let entries = &[entry(0), entry(1)];
+        let volume = device.create_bind_group_layout(&BindGroupLayoutDescriptor { label: None, entries });
+        Self { device, queue, arena, slot, serial, silhouettes: Silhouettes::new(device), volume }
+    }
+
+    fn mesh(&self) -> &Mesh {
+        self.arena.get(self.slot, self.serial).expect("mesh")
+    }
+
+    /// Changes what the device knows of the mesh.
+    fn tamper(&mut self, tamper: impl FnOnce(&mut Incidence)) {
+        let mut incidence = Incidence::new(&self.mesh().topology);
+        tamper(&mut incidence);
+        self.silhouettes.meshes.insert(self.serial, MeshBuffers::of(self.device, incidence));
+    }
+
+    /// What the device lists.
+    fn listed(&mut self, light: Vec4, castings: &[Casting], dark_cap: DarkCap) -> Triangles {
+        let extraction = Extraction {
+            light: 3,
+            mesh: self.mesh().version,
+            castings: 0..castings.len() as u32,
+            sides: true,
+            dark_cap,
+            light_cap: LightCap::Whole,
+        };
+        let draw = Draw {
+            caster: 5,
+            light,
+            cap: Vec4::ZERO,
+            z_pass: false,
+            near_layers: 0,
+            scissor: [0; 4],
+            volume: Volume::default(),
+            extraction: Some(extraction),
+            mirrored: false,
+        };
+        let plan = FramePlan { castings: castings.to_vec(), draws: vec![draw], ..FramePlan::default() };
+        let (arena, slot, serial) = (&self.arena, self.slot, self.serial);
+        let caster = |_: &Draw| Some((arena.get(slot, serial)?, DrawRecord::zeroed()));
+        self.silhouettes.extract(self.device, self.queue, &self.volume, arena, &plan, caster);
+        let lists = &self.silhouettes.lists[&(3, 5)];
+        let [indices, draws] = [&lists.indices, &lists.draws].map(|buffer| read(self.device, self.queue, buffer));
+        [0, 1, 2].map(|list| {
+            let &[count, instances, first, base, first_instance] = &draws[5 * list..5 * list + 5] else {
+                unreachable!()
+            };
+            assert_eq!([instances, base, first_instance], [1, 2 * self.mesh().first, 0]);
+            sorted(&indices[first as usize..(first + count) as usize])
+        })
+    }
 }
 
 /// Edges of a volume that are not traversed as often one way as the other.
@@ -179,7 +196,7 @@ fn the_device_lists_what_the_planner_lists() {
             let mut castings = castings(topology, light);
             for round in 0..3 {
                 let expected = expected(topology, light, &castings);
-                let found = listed(&device, topology, light, &castings, dark_cap, |_| {});
+                let found = Bench::new(&device, topology).listed(light, &castings, dark_cap);
                 assert!(!expected[0].is_empty() && expected[1].len() + expected[2].len() > 50);
                 assert_eq!(found, expected, "mesh {m}, {light}, round {round}");
                 // Any casting will do, be it from the back.
@@ -197,8 +214,9 @@ fn volumes_of_the_device_are_closed() {
             for dark_cap in if light.w == 0.0 { &[DarkCap::None][..] } else { &[DarkCap::Triangles, DarkCap::Fan] } {
                 let castings = castings(&topology, light);
                 let open = |tamper: fn(&mut Incidence)| {
-                    let lists = listed(&device, &topology, light, &castings, *dark_cap, tamper);
-                    open_edges(&lists, light.w == 0.0)
+                    let mut bench = Bench::new(&device, &topology);
+                    bench.tamper(tamper);
+                    open_edges(&bench.listed(light, &castings, *dark_cap), light.w == 0.0)
                 };
                 assert_eq!(open(|_| {}), 0, "{light}, {dark_cap:?}");
                 // The negative controls: one edge forgotten, edges turned round, triangles taken for others.
@@ -216,6 +234,29 @@ fn volumes_of_the_device_are_closed() {
                 }
             }
         }
+    }
+}
+
+/// Incidence stays, silhouettes follow the positions; and what does not change is not listed again.
+#[test]
+fn lists_follow_vertices_that_move() {
+    let Some(device) = device() else { return };
+    let rigid = ring();
+    let alike: Vec<u32> = (0..rigid.positions.len() as u32).collect();
+    let topology = Topology::bending(&rigid.positions, &rigid.triangles, &alike, |_| true).expect("mesh");
+    let (mut bench, light) = (Bench::new(&device, &topology), LIGHTS[0]);
+    let castings = castings(&topology, light);
+    let mut before = bench.listed(light, &castings, DarkCap::Triangles);
+    for turn in 1..4 {
+        assert_eq!(bench.listed(light, &castings, DarkCap::Triangles), before);
+        assert!(bench.silhouettes.stale.is_empty(), "nothing has moved");
+        let bent: Vec<[f32; 3]> =
+            rigid.positions.iter().map(|&[x, y, z]| [x, y + 0.3 * turn as f32 * x * x, z]).collect();
+        bench.arena.move_vertices(&device.1, bench.slot, bench.serial, &bent).expect("as many positions");
+        let now = bench.listed(light, &castings, DarkCap::Triangles);
+        assert_eq!(now, expected(&bench.mesh().topology, light, &castings), "turn {turn}");
+        assert_ne!(now, before, "another pose has another silhouette");
+        before = now;
     }
 }
 
