@@ -58,8 +58,8 @@ impl CostModel {
         pairs * (self.raster_pair_ns - self.tile_pair_ns) > f64::from(pixels) * self.tile_pixel_ns
     }
 
-    /// Measures `device`: a few frames of 512x512 pixels, some hundreds of milliseconds on a software device. Keep the
-    /// result as long as the device.
+    /// Measures `device`: a few frames of 512x512 pixels and a few silhouettes, a tenth of a second or two on a software
+    /// device. Keep the result as long as the device.
     #[must_use]
     pub fn calibrate(device: &Device, queue: &Queue) -> Self {
         let model = measure(device, queue).unwrap_or(Self::RASTERISE);

@@ -4,7 +4,7 @@
 //! idle. Nothing is drawn: both ways draw much the same.
 
 use super::CostModel;
-use crate::{Caster, Counting, Frame, LightKind, Measures, ShadowLight, Shadows, Silhouettes, Technique};
+use crate::{Caster, Counting, Frame, LightKind, Measures, MeshId, ShadowLight, Shadows, Silhouettes, Technique};
 use glam::{DAffine3, DVec3};
 use std::f64::consts::TAU;
 use std::time::Instant;
@@ -12,16 +12,20 @@ use wgpu::{Device, PollType, Queue};
 use zfail_plan::view::{Projection, View};
 
 /// Quads along and around the rings.
-const SIZES: [[u32; 2]; 2] = [[160, 100], [24, 12]];
+const SIZES: [[u32; 2]; 2] = [[96, 64], [24, 12]];
 /// The first time, pipelines are compiled. The least of several is what it takes when nobody disturbs it.
-const FRAMES: u32 = 6;
+const FRAMES: u32 = 5;
 
 /// Completes `model` with the times of silhouettes, if they can be measured.
 pub(super) fn measure(device: &Device, queue: &Queue, model: CostModel) -> Option<CostModel> {
     let [large, small] = SIZES.map(|[along, around]| f64::from(2 * along * around));
-    let times = |silhouettes| {
-        let [large, small] = SIZES.map(|size| measure_ring(device, queue, size, silhouettes));
-        large.zip(small)
+    // The pipelines are the same for both.
+    let mut shadows = Shadows::new(device);
+    let [large_ring, small_ring] = SIZES.map(|size| ring(&mut shadows, device, queue, size));
+    let (large_ring, small_ring) = (large_ring?, small_ring?);
+    let mut times = |silhouettes| {
+        let mut time = |mesh| measure_mesh(&mut shadows, device, queue, mesh, silhouettes);
+        Some((time(large_ring)?, time(small_ring)?))
     };
     let (cpu, gpu) = (times(Silhouettes::Cpu)?, times(Silhouettes::Gpu)?);
     let each = |(of_large, of_small): (f64, f64)| (of_large - of_small).max(0.0) / (large - small);
@@ -31,9 +35,7 @@ pub(super) fn measure(device: &Device, queue: &Queue, model: CostModel) -> Optio
     Some(CostModel { cpu_triangle_ns, gpu_triangle_ns, gpu_caster_ns, ..model })
 }
 
-/// Nanoseconds of a frame in which the light of one ring has moved.
-fn measure_ring(device: &Device, queue: &Queue, [along, around]: [u32; 2], silhouettes: Silhouettes) -> Option<f64> {
-    let mut shadows = Shadows::new(device);
+fn ring(shadows: &mut Shadows, device: &Device, queue: &Queue, [along, around]: [u32; 2]) -> Option<MeshId> {
     let id = |i: u32, j: u32| i % along * around + j % around;
     let grid = || (0..along).flat_map(|i| (0..around).map(move |j| (i, j)));
     let vertex = |(i, j): (u32, u32)| {
@@ -44,7 +46,17 @@ fn measure_ring(device: &Device, queue: &Queue, [along, around]: [u32; 2], silho
     let quad = |(i, j)| [[id(i, j), id(i, j + 1), id(i + 1, j + 1)], [id(i, j), id(i + 1, j + 1), id(i + 1, j)]];
     let positions: Vec<[f32; 3]> = grid().map(vertex).collect();
     let triangles: Vec<[u32; 3]> = grid().flat_map(quad).collect();
-    let mesh = shadows.add_mesh(device, queue, &positions, &triangles, |_| true).ok()?;
+    shadows.add_mesh(device, queue, &positions, &triangles, |_| true).ok()
+}
+
+/// Nanoseconds of a frame in which the light of one mesh has moved.
+fn measure_mesh(
+    shadows: &mut Shadows,
+    device: &Device,
+    queue: &Queue,
+    mesh: MeshId,
+    silhouettes: Silhouettes,
+) -> Option<f64> {
     let casters = [Caster { mesh, world_from_object: DAffine3::IDENTITY }];
     let view = View {
         world_from_view: DAffine3::from_translation(5.0 * DVec3::Z),
