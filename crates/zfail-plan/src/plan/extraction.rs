@@ -62,7 +62,7 @@ const LARGEST: f64 = 1.0 / 8.0;
 /// How many balls are tried, each half as large as the one before.
 const BALLS: i32 = 9;
 /// Moves of the light that a proof has to outlast to be worth its cost.
-const WORTH: u32 = 8;
+const WORTH: f64 = 8.0;
 /// Moves of the light after which a caster that had to stay with the planner is tried again.
 const PATIENCE: u32 = 64;
 
@@ -74,6 +74,8 @@ pub(super) struct Extracted {
     /// For what they were found.
     found_for: Option<(u64, ObjectLight)>,
     proof: Option<Proof>,
+    /// Radius of the last ball that was tried.
+    tried: Option<f64>,
     /// Moves of the light until the device is tried again.
     wait: u32,
 }
@@ -84,8 +86,6 @@ struct Proof {
     mesh: u64,
     ball: Ball,
     layers: usize,
-    /// How often the light has moved since.
-    moves: u32,
 }
 
 impl Extracted {
@@ -99,25 +99,28 @@ impl Extracted {
         if self.found_for != Some((mesh, light)) {
             casting::castings(topology, light, &mut self.castings);
             self.found_for = Some((mesh, light));
+            self.proof = None;
         }
     }
 
-    /// Looks for the largest ball about `light` in which there are at most `most` layers.
-    fn prove(&mut self, topology: &Topology, mesh: u64, light: ObjectLight, most: usize) {
+    /// Looks for the largest ball about `light` in which there are at most `most` layers, no smaller than `least`.
+    fn prove(&mut self, topology: &Topology, mesh: u64, light: ObjectLight, most: usize, least: f64) {
+        self.proof = None;
+        self.cast(topology, mesh, light);
         let to_middle = topology.bounds().center() - light.truncate().as_dvec3();
         let distance = if light.w == 0.0 { 1.0 } else { to_middle.length() };
         // What failed the last time is likely to fail again: at most one step further out.
-        let last = self.proof.take().map_or(f64::INFINITY, |proof| proof.ball.radius * 2.5);
-        self.cast(topology, mesh, light);
+        let largest = self.tried.map_or(f64::INFINITY, |radius| 2.5 * radius);
         let radii = (0..BALLS).map(|halvings| distance * LARGEST * 0.5_f64.powi(halvings));
-        self.proof = radii.filter(|&radius| radius <= last).find_map(|radius| {
+        for radius in radii.filter(|&radius| radius <= largest && radius >= least) {
+            self.tried = Some(radius);
             let ball = Ball { center: light, radius };
-            let layers = ball.most_layers(topology, &self.castings).filter(|&layers| layers <= most)?;
-            Some(Proof { mesh, ball, layers, moves: 0 })
-        });
-        if self.proof.is_none() {
-            self.wait = PATIENCE;
+            if let Some(layers) = ball.most_layers(topology, &self.castings).filter(|&layers| layers <= most) {
+                self.proof = Some(Proof { mesh, ball, layers });
+                return;
+            }
         }
+        self.give_up();
     }
 
     /// Leaves the pair to the planner for a while.
@@ -129,25 +132,15 @@ impl Extracted {
 impl Pair {
     /// Whether the device is to be asked, as far as no proof is needed.
     fn is_candidate(&mut self, silhouettes: Silhouettes) -> bool {
-        let (mesh, light, extracted) = (self.mesh(), self.light, &mut self.extracted);
         if self.moves > 0 {
-            extracted.wait = extracted.wait.saturating_sub(1);
-            if let Some(proof) = &mut extracted.proof {
-                proof.moves = proof.moves.saturating_add(1);
-            }
+            self.extracted.wait = self.extracted.wait.saturating_sub(1);
         }
+        let ready = self.extracted.wait == 0;
         match silhouettes {
             Silhouettes::Cpu => false,
-            Silhouettes::Gpu => extracted.wait == 0,
-            Silhouettes::WhereCheaper => {
-                let short = extracted.proof.as_ref().is_some_and(|proof| proof.moves < WORTH);
-                if short && extracted.proved(mesh, light).is_none() {
-                    extracted.wait = PATIENCE;
-                    extracted.proof = None;
-                }
-                // What stands still costs nothing on either side, and the planner knows more of it.
-                self.moves > 1 && extracted.wait == 0
-            }
+            Silhouettes::Gpu => ready,
+            // What stands still costs nothing on either side, and the planner knows more of it.
+            Silhouettes::WhereCheaper => ready && self.moves > 1,
         }
     }
 
@@ -208,7 +201,8 @@ pub(super) fn choose(frame: &Frame<'_>, measures: Measures, extractable: &[bool]
     let prove = |(c, pair): (usize, &mut Pair)| {
         if unproved(pair) {
             let topology = frame.casters[c].topology;
-            pair.extracted.prove(topology, pair.mesh(), pair.light, LAYERS / candidates);
+            let least = if measures.silhouettes == Silhouettes::Gpu { 0.0 } else { WORTH * pair.step };
+            pair.extracted.prove(topology, pair.mesh(), pair.light, LAYERS / candidates, least);
         }
     };
     match pairs.iter().filter(|pair| unproved(pair)).count() {

@@ -41,6 +41,8 @@ pub(super) struct Pair {
     mesh: u64,
     /// Frames on end in each of which light or mesh were not those of the frame before.
     pub moves: u32,
+    /// How far the light has moved in the last of them, object space; infinite for another mesh or kind of light.
+    pub step: f64,
     /// Whether the device finds silhouette and caps, so that nothing of them is known here.
     pub on_device: bool,
     pub extracted: Extracted,
@@ -95,6 +97,9 @@ impl Pair {
     pub fn aim(&mut self, caster: &Placed, kind: &LightKind) -> Option<()> {
         let light = caster.object_light(kind)?;
         if self.mesh != caster.mesh || self.light != light {
+            let comparable = self.mesh == caster.mesh && self.light.w == light.w;
+            let step = (light - self.light).truncate().as_dvec3().length();
+            self.step = if comparable { step } else { f64::INFINITY };
             self.weighed = false;
             self.moves = self.moves.saturating_add(1);
         } else {
