@@ -181,8 +181,9 @@ impl Shadows {
         Pipelines::new(device, &self.layout, &self.module, target)
     }
 
-    /// Plans every light of a frame and uploads its volumes. Call it before encoding the frame's passes, and submit
-    /// those before preparing the next frame. [`Self::plan`] then tells what will be drawn.
+    /// Plans every light of a frame and uploads its volumes, or submits compute work that finds them. Call it before
+    /// encoding the frame's passes, and submit those before preparing the next frame. [`Self::plan`] then tells what will
+    /// be drawn.
     ///
     /// # Errors
     /// A caster without a registered mesh or with a singular transform, or volumes too large for the device's buffers.
