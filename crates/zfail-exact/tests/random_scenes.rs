@@ -5,7 +5,7 @@
 
 use std::{env, fmt::Write as _, str::FromStr};
 use zfail_exact::{bench, kinds::Kind, recipe::Recipe, shrink::shrink, tally::Tally};
-use zfail_render::{Gpu, GpuOptions, Settings, Technique, Tiles};
+use zfail_render::{Gpu, GpuOptions, Settings, Silhouettes, Technique, Tiles};
 
 fn setting<T: FromStr>(name: &str, default: T) -> T {
     env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
@@ -31,9 +31,11 @@ fn no_pixel_is_wrong() {
         for seed in first..first + scenes.div_ceil(kinds.len() as u64) {
             let recipe = kind.recipe(seed, size());
             let technique = Technique::ALL[(seed % Technique::ALL.len() as u64) as usize];
-            // The best technique counts by tiles in every second of its scenes.
-            let tiles = if seed % 8 < 4 { Tiles::Always } else { Tiles::Never };
-            let settings = Settings { technique, tiles, ..Settings::default() };
+            // The best technique counts by tiles in every second of its scenes, and in the others finds silhouettes on the
+            // device.
+            let (tiles, silhouettes) =
+                if seed % 8 < 4 { (Tiles::Always, Silhouettes::Cpu) } else { (Tiles::Never, Silhouettes::Gpu) };
+            let settings = Settings { technique, tiles, silhouettes, ..Settings::default() };
             let comparisons = bench::images(&gpu, &recipe, &settings).and_then(|i| i.compare());
             let comparisons = comparisons.unwrap_or_else(|e| panic!("{kind:?} seed {seed}: {e}"));
             for comparison in &comparisons {

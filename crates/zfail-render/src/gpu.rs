@@ -44,7 +44,8 @@ pub struct Gpu {
 }
 
 impl Gpu {
-    /// What rasterising and tiles cost on this device; measured at the first call, some tens of milliseconds.
+    /// What rasterising, tiles and silhouettes cost on this device; measured at the first call, a tenth of a second or two on
+    /// software devices.
     pub(crate) fn costs(&self) -> CostModel {
         *self.costs.get_or_init(|| CostModel::calibrate(&self.device, &self.queue))
     }

@@ -51,5 +51,6 @@ pub use renderer::Renderer;
 pub use settings::{Exposure, Settings, Terminator};
 pub use stats::{FrameStats, LightFigures, TriangleFigures};
 pub use wgpu;
-pub use zfail::{Technique, Tiles, UnknownTechnique};
+pub use zfail;
+pub use zfail::{Silhouettes, Technique, Tiles, UnknownTechnique};
 pub use zfail_plan;

@@ -1,6 +1,6 @@
 //! How a frame is rendered: the caller's choices, apart from scene and view.
 
-use zfail::{Measures, Technique, Tiles};
+use zfail::{Measures, Silhouettes, Technique, Tiles};
 
 /// Choices for one frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,6 +9,8 @@ pub struct Settings {
     pub technique: Technique,
     /// When a technique that counts by tiles does so. Pictures of several samples are always rasterised.
     pub tiles: Tiles,
+    /// Where a technique that may use the device for it finds silhouettes.
+    pub silhouettes: Silhouettes,
     /// Samples per pixel: 1 or 4. Every sample has a shadow verdict of its own.
     pub samples: u32,
     /// Whether anything casts shadows.
@@ -26,6 +28,7 @@ impl Default for Settings {
         Self {
             technique: Technique::Auto,
             tiles: Tiles::WhereCheaper,
+            silhouettes: Silhouettes::WhereCheaper,
             samples: 1,
             shadows: true,
             lights: None,
@@ -39,7 +42,11 @@ impl Settings {
     /// The steps that the technique takes under these settings.
     pub(crate) fn measures(&self) -> Measures {
         let measures = self.technique.measures();
-        Measures { tiles: if measures.tiles == Tiles::Never { Tiles::Never } else { self.tiles }, ..measures }
+        Measures {
+            tiles: if measures.tiles == Tiles::Never { Tiles::Never } else { self.tiles },
+            silhouettes: if measures.silhouettes == Silhouettes::Cpu { Silhouettes::Cpu } else { self.silhouettes },
+            ..measures
+        }
     }
 }
 

@@ -2,7 +2,10 @@
 //!
 //! In: a device. Out: constants, measured on volumes like those whose choice is in doubt: many long, thin sides. On a
 //! software rasteriser the cost of a side follows its outline, block by block, and so does that of the tile pass; they
-//! differ in the time for a block, and the tile pass costs something for every pixel that it looks at.
+//! differ in the time for a block, and the tile pass costs something for every pixel that it looks at. Silhouettes are a
+//! measurement of their own.
+
+mod silhouettes;
 
 use crate::{Caster, Counting, Frame, LightKind, Measures, ShadowLight, Shadows, Target};
 use glam::{DAffine3, DVec3};
@@ -24,11 +27,30 @@ pub struct CostModel {
     pub tile_pair_ns: f64,
     /// Nanoseconds per pixel of the light that the tile pass costs in any case.
     pub tile_pixel_ns: f64,
+    /// Nanoseconds to find silhouette and caps on the CPU and to upload them, per triangle of the caster.
+    pub cpu_triangle_ns: f64,
+    /// Nanoseconds to find them on the device, per triangle.
+    pub gpu_triangle_ns: f64,
+    /// Nanoseconds for a caster that the device costs in any case.
+    pub gpu_caster_ns: f64,
 }
 
 impl CostModel {
-    /// Of a device on which rasterisation is never too expensive.
-    pub const RASTERISE: Self = Self { raster_pair_ns: 0.0, tile_pair_ns: 1.0, tile_pixel_ns: 0.0 };
+    /// Of a device that rasterises all volumes and finds no silhouettes.
+    pub const RASTERISE: Self = Self {
+        raster_pair_ns: 0.0,
+        tile_pair_ns: 1.0,
+        tile_pixel_ns: 0.0,
+        cpu_triangle_ns: 0.0,
+        gpu_triangle_ns: 1.0,
+        gpu_caster_ns: 0.0,
+    };
+
+    /// Whether the device finds the silhouette of so many triangles in less time.
+    #[must_use]
+    pub(crate) fn may_extract(&self, triangles: usize) -> bool {
+        triangles as f64 * (self.cpu_triangle_ns - self.gpu_triangle_ns) > self.gpu_caster_ns
+    }
 
     /// Whether so many pairs of a side and a tile cost less by tiles, over so many pixels.
     #[must_use]
@@ -36,11 +58,12 @@ impl CostModel {
         pairs * (self.raster_pair_ns - self.tile_pair_ns) > f64::from(pixels) * self.tile_pixel_ns
     }
 
-    /// Measures `device`: a few frames of 512x512 pixels, some tens of milliseconds on a software device. Keep the result
-    /// as long as the device.
+    /// Measures `device`: a few frames of 512x512 pixels and a few silhouettes, a tenth of a second or two on a software
+    /// device. Keep the result as long as the device.
     #[must_use]
     pub fn calibrate(device: &Device, queue: &Queue) -> Self {
-        measure(device, queue).unwrap_or(Self::RASTERISE)
+        let model = measure(device, queue).unwrap_or(Self::RASTERISE);
+        silhouettes::measure(device, queue, model).unwrap_or(model)
     }
 }
 
@@ -57,6 +80,7 @@ fn measure(device: &Device, queue: &Queue) -> Option<CostModel> {
         raster_pair_ns: (raster - few_rasterised).max(0.0) / more,
         tile_pair_ns: (tiled - few_tiled).max(0.0) / more,
         tile_pixel_ns: (few_tiled - few_rasterised).max(0.0) / f64::from(SIZE * SIZE),
+        ..CostModel::RASTERISE
     })
 }
 

@@ -16,6 +16,17 @@ pub(crate) struct DrawRecord {
     cap: [f32; 4],
 }
 
+impl DrawRecord {
+    /// Of a draw whose caster is placed in `view`.
+    pub fn new(draw: &Draw, view: &View, world_from_object: &DAffine3) -> Self {
+        Self {
+            clip_from_object: view.clip_from_object(world_from_object).to_cols_array_2d(),
+            light: draw.light.to_array(),
+            cap: draw.cap.to_array(),
+        }
+    }
+}
+
 /// Buffers that grow to the largest frame seen.
 #[derive(Debug)]
 pub(crate) struct FrameBuffers {
@@ -42,11 +53,7 @@ impl FrameBuffers {
         view: &View,
         world_from_object: impl Fn(u32) -> DAffine3,
     ) -> Result<bool, Error> {
-        let record = |draw: &Draw| DrawRecord {
-            clip_from_object: view.clip_from_object(&world_from_object(draw.caster)).to_cols_array_2d(),
-            light: draw.light.to_array(),
-            cap: draw.cap.to_array(),
-        };
+        let record = |draw: &Draw| DrawRecord::new(draw, view, &world_from_object(draw.caster));
         self.records.clear();
         self.records.extend(plan.draws.iter().map(record));
 

@@ -25,6 +25,7 @@ mod features;
 mod frame_buffers;
 mod pipelines;
 mod shadows;
+mod silhouettes;
 mod tiled;
 pub mod tiles;
 
@@ -34,8 +35,8 @@ pub use features::{depth_stencil_format, wanted_features};
 pub use pipelines::{Pipelines, Target, lit_stencil};
 pub use shadows::{Caster, Frame, MeshId, Shadows};
 pub use zfail_plan::plan::{
-    Counting, Culled, FramePlan, LightStats, Measures, ShadowLight, Technique, Tiles, Triangles, UnknownTechnique,
-    ZPass,
+    Counting, Culled, FramePlan, LightStats, Measures, ShadowLight, Silhouettes, Technique, Tiles, Triangles,
+    UnknownTechnique, ZPass,
 };
 pub use zfail_plan::scene::{Bounds, LightKind};
 pub use zfail_plan::topology::{Surface, Topology, TopologyError};

@@ -3,8 +3,9 @@
 use crate::arena::Arena;
 use crate::cost::CostModel;
 use crate::error::Error;
-use crate::frame_buffers::FrameBuffers;
+use crate::frame_buffers::{DrawRecord, FrameBuffers};
 use crate::pipelines::{Pipelines, STICKY, Target, Variant};
+use crate::silhouettes::{List, Place, Silhouettes};
 use crate::tiled::{Prepared, Tiled, TiledLight, can_tile};
 use crate::tiles::TileStats;
 use glam::DAffine3;
@@ -14,7 +15,9 @@ use wgpu::{
     BindingType, BufferBindingType, CommandEncoder, Device, IndexFormat, Queue, RenderPass, RenderPipeline,
     ShaderModule, ShaderStages, TextureView,
 };
-use zfail_plan::plan::{self, Counting, Draw, FramePlan, LightStats, Measures, Planner, ShadowLight, Tiles};
+use zfail_plan::plan::{
+    self, Counting, DarkCap, Draw, Extraction, FramePlan, LightCap, LightStats, Measures, Planner, ShadowLight, Tiles,
+};
 use zfail_plan::scene::Bounds;
 use zfail_plan::scissor::Rectangle;
 use zfail_plan::topology::{Surface, Topology};
@@ -69,6 +72,9 @@ pub struct Shadows {
     image: Rectangle,
     prepared: Option<Prepared>,
     tiled: Option<Tiled>,
+    /// By caster of the frame: whether the device can find its silhouettes, and is to if its light moves.
+    extractable: Vec<bool>,
+    silhouettes: Option<Silhouettes>,
     /// Whether `tiled` belongs to the prepared frame.
     counted: bool,
     costs: CostModel,
@@ -108,6 +114,8 @@ impl Shadows {
             image: [0; 4],
             prepared: None,
             tiled: None,
+            extractable: Vec::new(),
+            silhouettes: None,
             counted: false,
             costs: CostModel::RASTERISE,
         }
@@ -155,6 +163,9 @@ impl Shadows {
 
     /// Forgets a mesh and gives back its topology; `None` if it is not registered here.
     pub fn remove_mesh(&mut self, mesh: MeshId) -> Option<Topology> {
+        if let Some(silhouettes) = &mut self.silhouettes {
+            silhouettes.forget(mesh.serial);
+        }
         self.arena.remove(mesh.slot, mesh.serial)
     }
 
@@ -170,8 +181,9 @@ impl Shadows {
         Pipelines::new(device, &self.layout, &self.module, target)
     }
 
-    /// Plans every light of a frame and uploads its volumes. Call it before encoding the frame's passes, and submit
-    /// those before preparing the next frame. [`Self::plan`] then tells what will be drawn.
+    /// Plans every light of a frame and uploads its volumes, or submits compute work that finds them. Call it before
+    /// encoding the frame's passes, and submit those before preparing the next frame. [`Self::plan`] then tells what will
+    /// be drawn.
     ///
     /// # Errors
     /// A caster without a registered mesh or with a singular transform, or volumes too large for the device's buffers.
@@ -186,7 +198,8 @@ impl Shadows {
         outcome
     }
 
-    /// What the device's times are: [`Measures::tiles`] is decided by them. Without it every volume is rasterised.
+    /// What the device's times are: [`Measures::tiles`] and [`Measures::silhouettes`] are decided by them. Without it every
+    /// volume is rasterised, and every silhouette found on the CPU.
     pub fn set_cost_model(&mut self, costs: CostModel) {
         self.costs = costs;
     }
@@ -240,14 +253,16 @@ impl Shadows {
             let world_from_object = caster.world_from_object;
             casters.push(plan::Caster { topology: &mesh.topology, mesh: mesh.version, world_from_object });
         }
-        let plan = self.planner.plan(&plan::Frame {
+        find_extractable(&mut self.extractable, device, frame, &self.arena, self.costs);
+        let planned = plan::Frame {
             view: frame.view,
             casters: &casters,
             lights: frame.lights,
             receivers: frame.receivers,
             measures: frame.measures,
             counting: frame.counting,
-        })?;
+        };
+        let plan = self.planner.plan_extracting(&planned, &self.extractable)?;
         self.first_positions.clear();
         let first = |d: &Draw| {
             let mesh = frame.casters[d.caster as usize].mesh;
@@ -258,6 +273,15 @@ impl Shadows {
         let moved = self.buffers.upload(device, queue, plan, frame.view, place)?;
         if moved {
             self.bindings = bind(device, &self.layout, &self.arena, &self.buffers);
+        }
+        if self.silhouettes.is_some() || plan.lights.iter().any(|light| light.stats.extracted > 0) {
+            let silhouettes = self.silhouettes.get_or_insert_with(|| Silhouettes::new(device));
+            let caster = |draw: &Draw| {
+                let caster = frame.casters.get(draw.caster as usize)?;
+                let record = DrawRecord::new(draw, frame.view, &caster.world_from_object);
+                Some((self.arena.get(caster.mesh.slot, caster.mesh.serial)?, record))
+            };
+            silhouettes.extract(device, queue, &self.layout, &self.arena, plan, caster);
         }
         let mut visible = Bounds::EMPTY;
         for receivers in frame.receivers.iter().filter(|bounds| !bounds.is_empty()) {
@@ -305,10 +329,9 @@ impl Shadows {
         let tiled = self.tiled_light(light).and_then(|tiled| Some((tiled, pipelines.tiles.as_ref()?)));
         let Some(light) = plan.lights.get(light) else { return };
         let Some(scissor) = light.scissor.filter(|_| light.stats.has_shadow()) else { return };
-        pass.set_bind_group(0, &self.bindings, &[]);
-        pass.set_index_buffer(self.buffers.indices.slice(..), IndexFormat::Uint32);
+        self.bind_planned(pass);
         let last = light.batches.len().saturating_sub(1);
-        let mut state = PassState { scissor: None, pipeline: None };
+        let mut state = PassState { scissor: None, pipeline: None, extracted: None };
         let draws = || light.batches.iter().flat_map(|batch| &plan.draws[batch.start as usize..batch.end as usize]);
         let rasterised = |draw: &Draw| tiled.is_none() || !can_tile(draw);
         // Modulo 256, as all counting is. What the tile pass counts it starts itself.
@@ -357,6 +380,14 @@ impl Shadows {
         let variant = Variant { z_pass: draw.z_pass, finite: self.finite, batched, clockwise: draw.mirrored };
         let reversed = Variant { clockwise: !variant.clockwise, ..variant };
         state.set_scissor(pass, draw.scissor);
+        if let Some(extraction) = &draw.extraction {
+            let caps = [pipelines.light_cap(variant), pipelines.light_cap(reversed)];
+            self.draw_extracted(pass, state, extraction, draw.caster, pipelines.extruded(variant), caps);
+            return;
+        }
+        if state.extracted.take().is_some() {
+            self.bind_planned(pass);
+        }
         // Neighbouring ranges under one pipeline are one draw.
         let mut pending: Option<(&RenderPipeline, Range<u32>)> = None;
         for (pipeline, range) in [
@@ -385,12 +416,66 @@ impl Shadows {
             pass.draw_indexed(range, base, d..d + 1);
         }
     }
+
+    /// Draws from the index lists of the plan.
+    fn bind_planned(&self, pass: &mut RenderPass<'_>) {
+        pass.set_bind_group(0, &self.bindings, &[]);
+        pass.set_index_buffer(self.buffers.indices.slice(..), IndexFormat::Uint32);
+    }
+
+    /// Draws the lists that the device has made for one caster, whose lengths only it knows.
+    fn draw_extracted<'p>(
+        &self,
+        pass: &mut RenderPass<'_>,
+        state: &mut PassState<'p>,
+        extraction: &Extraction,
+        caster: u32,
+        extruded: &'p RenderPipeline,
+        [light_cap, reversed]: [&'p RenderPipeline; 2],
+    ) {
+        let Some(silhouettes) = &self.silhouettes else { return };
+        let place = (extraction.light, caster);
+        if state.extracted.replace(place) != Some(place) {
+            silhouettes.bind(pass, place);
+        }
+        if extraction.sides || extraction.dark_cap != DarkCap::None {
+            state.set_pipeline(pass, extruded);
+            silhouettes.draw(pass, place, List::Extruded);
+        }
+        if extraction.light_cap != LightCap::None {
+            state.set_pipeline(pass, light_cap);
+            silhouettes.draw(pass, place, List::LightCap);
+            state.set_pipeline(pass, reversed);
+            silhouettes.draw(pass, place, List::LightCapReversed);
+        }
+    }
+}
+
+/// Finds the casters of which the device has room for all lists that there may be, and is worth asking.
+fn find_extractable(extractable: &mut Vec<bool>, device: &Device, frame: &Frame<'_>, arena: &Arena, costs: CostModel) {
+    extractable.clear();
+    let limits = device.limits();
+    let choice = frame.measures.silhouettes;
+    if choice == plan::Silhouettes::Cpu || !Silhouettes::are_supported(&limits) {
+        return;
+    }
+    let mut left = Silhouettes::budget();
+    extractable.extend(frame.casters.iter().map(|caster| {
+        let Some(mesh) = arena.get(caster.mesh.slot, caster.mesh.serial) else { return false };
+        let worth = choice == plan::Silhouettes::Gpu || costs.may_extract(mesh.topology.by_part.len());
+        let bytes = Silhouettes::bytes(&limits, mesh).filter(|_| worth).map(|bytes| bytes * frame.lights.len() as u64);
+        let rest = bytes.and_then(|bytes| left.checked_sub(bytes));
+        left = rest.unwrap_or(left);
+        rest.is_some()
+    }));
 }
 
 /// What a pass has been told, so that it is told only once.
 struct PassState<'p> {
     scissor: Option<Rectangle>,
     pipeline: Option<&'p RenderPipeline>,
+    /// Whose extracted lists are bound; none for those of the plan.
+    extracted: Option<Place>,
 }
 
 impl<'p> PassState<'p> {

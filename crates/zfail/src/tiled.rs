@@ -43,7 +43,11 @@ pub(crate) struct TiledLight {
 /// Whether `draw` consists of nothing but sides in front of the visible surface.
 pub(crate) fn can_tile(draw: &Draw) -> bool {
     let volume = &draw.volume;
-    draw.z_pass && volume.dark_cap.is_empty() && volume.light_cap.is_empty() && volume.light_cap_reversed.is_empty()
+    draw.extraction.is_none()
+        && draw.z_pass
+        && volume.dark_cap.is_empty()
+        && volume.light_cap.is_empty()
+        && volume.light_cap_reversed.is_empty()
 }
 
 impl Tiled {

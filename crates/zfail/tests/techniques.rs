@@ -5,7 +5,8 @@ mod stage;
 
 use stage::{Random, Setup, Soup, draw};
 use zfail::glam::{DAffine3, DMat3, DQuat, DVec3};
-use zfail::{Counting, FramePlan, LightKind, Measures, Projection, Technique, Tiles, View, ZPass};
+use zfail::zfail_plan::plan::{DarkCap, Extraction, LightCap};
+use zfail::{Counting, FramePlan, LightKind, Measures, Projection, Silhouettes, Technique, Tiles, View, ZPass};
 
 /// A closed ring around y: not convex, with a hole.
 fn ring(segments: u32, sides: u32) -> Soup {
@@ -178,6 +179,60 @@ fn tiles_give_the_verdicts_of_the_rasteriser() {
     }
     println!("{wrong} of {all} verdicts differ, {dark} pixels darkened by tiles");
     assert!(wrong * 20_000 < all && dark > 10_000, "{wrong} differ of {all}, {dark} pixels darkened by tiles");
+}
+
+/// What is wrongly done without, and how.
+type Mistake = (&'static str, fn(&mut Extraction));
+
+/// Silhouettes from the device give the counts of those from the CPU, bit for bit on every pixel; without the device's
+/// sides or caps they do not.
+#[test]
+fn silhouettes_of_the_device_count_alike() {
+    let Some(device) = device() else { return };
+    let gpu = |technique: Technique| Measures { silhouettes: Silhouettes::Gpu, ..technique.measures() };
+    let steps = [
+        gpu(Technique::Auto),
+        gpu(Technique::EverittKilgard),
+        gpu(Technique::Mcguire),
+        Measures { fan: true, ..gpu(Technique::EverittKilgard) },
+    ];
+    let (mut extracted, mut fans, mut caps, mut exposed) = (0, 0, 0, 0);
+    for seed in 0..SEEDS / 2 {
+        let truth = device.truth(seed);
+        for measures in steps {
+            let (image, plan) = device.draw(seed, measures, Counting::Raw, |_| {});
+            let wrong = truth.iter().zip(&image).filter(|(a, b)| a != b).count();
+            assert_eq!(wrong, 0, "seed {seed}: {wrong} pixels differ with {measures:?}");
+            let extractions = || plan.draws.iter().filter_map(|draw| draw.extraction.as_ref());
+            extracted += extractions().count();
+            fans += extractions().filter(|e| e.dark_cap == DarkCap::Fan).count();
+            caps += extractions().filter(|e| e.dark_cap == DarkCap::Triangles).count();
+            exposed += extractions().filter(|e| e.light_cap == LightCap::Exposed).count();
+            assert_eq!(extractions().count(), plan.draws.len(), "seed {seed}: a caster stayed on the CPU");
+        }
+        let lit = |measures| {
+            let image = device.draw(seed, measures, Counting::Verdict, |_| {}).0;
+            image.iter().map(|&count| count == 0).collect::<Vec<_>>()
+        };
+        assert_eq!(lit(Technique::EverittKilgard.into()), lit(gpu(Technique::Auto)), "seed {seed}: verdicts differ");
+    }
+    println!("{extracted} extracted, {fans} fans, {caps} dark caps, {exposed} exposed light caps");
+    assert!(extracted > 250 && fans > 30 && caps > 60 && exposed > 50, "{extracted} {fans} {caps} {exposed}");
+
+    let faults: [Mistake; 3] = [
+        ("light caps", |extraction| extraction.light_cap = LightCap::None),
+        ("sides and dark caps", |extraction| {
+            (extraction.sides, extraction.dark_cap) = (false, DarkCap::None);
+        }),
+        ("another caster's lists", |extraction| extraction.light += 1),
+    ];
+    for (name, fault) in faults {
+        let edit = |plan: &mut FramePlan| plan.draws.iter_mut().filter_map(|d| d.extraction.as_mut()).for_each(fault);
+        let drawn = |seed| device.draw(seed, gpu(Technique::Mcguire), Counting::Raw, edit).0;
+        let noticed = (0..SEEDS / 8).filter(|&seed| drawn(seed) != device.truth(seed)).count();
+        println!("without {name}: noticed in {noticed} of {} scenes", SEEDS / 8);
+        assert!(noticed >= 2, "without {name}: noticed in {noticed} scenes only");
+    }
 }
 
 /// Edits that must not go unnoticed, each with a name and the technique whose plan is edited.

@@ -1,8 +1,10 @@
 //! `zfail bench`: what frames cost, by scene and technique, with shadows and without.
 //!
 //! In: scenes. Out: a table, or JSON. Data flow: `scenes` (what is played) -> `measure` (samples of every variant,
-//! interleaved) -> `record` (their spread) -> `table`. `scaling` is a measurement of its own, of planning alone.
+//! interleaved) -> `record` (their spread) -> `table`. `scaling` is a measurement of its own, of planning
+//! alone, and of `extraction`: silhouettes from the CPU and from the device.
 
+mod extraction;
 mod measure;
 mod record;
 mod scaling;
@@ -24,8 +26,11 @@ use serde::Serialize;
 /// If a scene or the device fails, or standard output cannot be written.
 pub fn run(args: &args::Bench) -> Result<(), Error> {
     if args.scaling {
-        let lines = scaling::measure(&scaling::SIZES, args.verbosity.quiet)?;
-        return if args.json { print_json(&lines) } else { console::print(&scaling::table(&lines)) };
+        // Planning needs no device.
+        let gpu = input::gpu(&args.device).ok();
+        let lines = scaling::measure(&scaling::SIZES, gpu.as_ref(), args.verbosity.quiet)?;
+        let device = gpu.as_ref().map(|gpu| gpu.info.name.as_str());
+        return if args.json { print_json(&lines) } else { console::print(&scaling::table(&lines, device)) };
     }
     let names: Vec<&str> = match &args.scenes[..] {
         [] => scenes::DEFAULT.to_vec(),

@@ -1,10 +1,12 @@
 //! How work grows with the number of triangles: the O(s) of the papers, s being the edges of the silhouette.
 //!
 //! In: bodies of 10^3 to 10^6 triangles, a light, and an eye in each of the three cases of McGuire et al. 2003,
-//! section 7. Out: submitted triangles, their growth, and what planning costs. No GPU takes part.
+//! section 7. Out: submitted triangles, their growth, and what planning costs; where there is a device, also what silhouettes
+//! cost on the CPU and on the device.
 //!
 //! The steps are those of the default technique but for the near count.
 
+use super::extraction::{self, Extraction};
 use super::record::Spread;
 use super::table::columns;
 use crate::console;
@@ -16,6 +18,7 @@ use zfail_plan::plan::{Caster, Counting, Frame, LightStats, Measures, Planner, S
 use zfail_plan::scene::{LightKind, Mesh};
 use zfail_plan::topology::Topology;
 use zfail_plan::view::{Projection, View};
+use zfail_render::Gpu;
 use zfail_scene::builtin::shapes;
 
 /// Triangles, about.
@@ -40,6 +43,8 @@ pub struct Line {
     pub moving_ms: f64,
     /// Of topology.
     pub bytes_per_triangle: f64,
+    /// Silhouettes of the CPU beside those of the device, where everything is drawn.
+    pub extraction: Option<Extraction>,
 }
 
 const LIGHT: DVec3 = DVec3::new(3.0, 5.0, 2.0);
@@ -87,8 +92,8 @@ fn root(triangles: usize, each: f64) -> usize {
 /// Measures all bodies at all `sizes`.
 ///
 /// # Errors
-/// If a body cannot cast shadows, which would be a fault of ours.
-pub fn measure(sizes: &[usize], quiet: bool) -> Result<Vec<Line>, Error> {
+/// If a body cannot cast shadows, which would be a fault of ours, or the device fails.
+pub fn measure(sizes: &[usize], gpu: Option<&Gpu>, quiet: bool) -> Result<Vec<Line>, Error> {
     let progress = console::progress(BODIES.len() * sizes.len(), quiet);
     let mut lines: Vec<Line> = Vec::new();
     for (body, make) in BODIES {
@@ -101,6 +106,9 @@ pub fn measure(sizes: &[usize], quiet: bool) -> Result<Vec<Line>, Error> {
                 let mut line = plan(body, eye, &topology)?;
                 let before = lines.iter().rev().find(|before| (before.body, before.eye) == (body, eye.0));
                 line.growth = before.and_then(|before| growth(before, &line));
+                if let Some(gpu) = gpu.filter(|_| line.case == 3) {
+                    line.extraction = Some(extraction::measure(gpu, &mesh, &view(eye.1, eye.2), LIGHT)?);
+                }
                 lines.push(line);
             }
             progress.inc(1);
@@ -168,6 +176,7 @@ fn plan(
         static_ms: Spread::of(still.into_iter()).median,
         moving_ms: Spread::of(moving.into_iter()).median,
         bytes_per_triangle: topology.bytes() as f64 / triangles.max(1) as f64,
+        extraction: None,
     })
 }
 
@@ -181,8 +190,8 @@ fn view(eye: DVec3, target: DVec3) -> View {
     }
 }
 
-/// The lines as a table.
-pub fn table(lines: &[Line]) -> String {
+/// The lines as a table; `device` found silhouettes.
+pub fn table(lines: &[Line], device: Option<&str>) -> String {
     let heading = [
         "eye",
         "case",
@@ -194,11 +203,19 @@ pub fn table(lines: &[Line]) -> String {
         "static ms",
         "moving ms",
         "bytes/triangle",
+        "on CPU ms",
+        "on device ms",
     ];
     let mut text = String::from(
         "Triangles submitted for one caster and one light, and the exponent with which they grow with the mesh: about 0.5 \
          is as the silhouette, 1 as the mesh.\nPlanning time per frame: nothing moved, the light moved.\n",
     );
+    if let Some(device) = device {
+        text += &format!(
+            "Finding silhouettes and caps of a moving light on the CPU and on {device}, where all are drawn; in parentheses \
+             the share of frames that did not go back to the CPU.\n"
+        );
+    }
     for body in lines.chunk_by(|a, b| a.body == b.body) {
         let mut rows = vec![heading.map(str::to_owned).to_vec()];
         rows.extend(body.iter().map(|line| {
@@ -213,12 +230,28 @@ pub fn table(lines: &[Line]) -> String {
                 format!("{:.4}", line.static_ms),
                 format!("{:.3}", line.moving_ms),
                 format!("{:.1}", line.bytes_per_triangle),
+                line.extraction.map_or_else(String::new, |found| format!("{:.3}", found.cpu_ms)),
+                line.extraction.map_or_else(String::new, |found| {
+                    format!("{:.3} ({:.0} %)", found.device_ms, 100.0 * found.on_device)
+                }),
             ]
         }));
         text += &format!("\n{}\n", body[0].body);
         text += &columns(&rows);
+        text += &crossover(body).map_or_else(String::new, |text| text + "\n");
     }
     text
+}
+
+/// From which size on the device is quicker.
+fn crossover(body: &[Line]) -> Option<String> {
+    let found: Vec<_> = body.iter().filter_map(|line| Some((line.triangles, line.extraction?))).collect();
+    let &(most, _) = found.last()?;
+    let slower = found.iter().rposition(|(_, found)| found.on_device < 0.5 || found.device_ms >= found.cpu_ms);
+    Some(match slower.map_or(found.first(), |i| found.get(i + 1)) {
+        Some((triangles, _)) => format!("The device is quicker from {triangles} triangles on."),
+        None => format!("The CPU is quicker up to {most} triangles at least."),
+    })
 }
 
 #[cfg(test)]
@@ -237,7 +270,7 @@ mod tests {
 
     #[test]
     fn a_sphere_seen_from_beside_grows_as_its_silhouette() {
-        let lines = measure(&[1_000, 16_000], true).unwrap();
+        let lines = measure(&[1_000, 16_000], None, true).unwrap();
         assert_eq!(lines.len(), BODIES.len() * EYES.len() * 2);
         let beside: Vec<_> = lines.iter().filter(|line| (line.body, line.eye) == ("sphere", "beside")).collect();
         let growth = beside[1].growth.unwrap();
@@ -245,6 +278,24 @@ mod tests {
         // The negative control: where the light cap has to be drawn, work grows as the mesh.
         let capped: Vec<_> = lines.iter().filter(|line| line.body == "sphere" && line.case == 3).collect();
         assert!(capped.iter().any(|line| line.growth.is_some_and(|growth| growth > 0.8)), "{lines:?}");
-        assert!(table(&lines).contains("torus knot"));
+        assert!(table(&lines, None).contains("torus knot"));
+    }
+
+    #[test]
+    fn the_crossover_is_where_the_device_stays_ahead() {
+        let lines = measure(&[1_000, 2_000, 4_000], None, true).unwrap();
+        let mut sphere: Vec<Line> =
+            lines.into_iter().filter(|line| (line.body, line.eye) == ("sphere", EYES[2].0)).collect();
+        assert_eq!(crossover(&sphere), None);
+        let mut say = |device_ms: [f64; 3]| {
+            for (line, device_ms) in sphere.iter_mut().zip(device_ms) {
+                line.extraction = Some(Extraction { cpu_ms: 1.0, device_ms, on_device: 1.0 });
+            }
+            crossover(&sphere).unwrap()
+        };
+        assert!(say([0.5, 2.0, 2.0]).contains("CPU"));
+        let middle = say([0.5, 2.0, 0.5]);
+        assert!(middle.contains("device") && middle == say([2.0, 1.0, 0.9]), "{middle}");
+        assert_ne!(middle, say([2.0, 0.9, 0.9]));
     }
 }

@@ -12,7 +12,7 @@ use crate::view::Projection;
 use glam::DAffine3;
 
 /// Layers a stencil of 8 bits can tell from zero, less a few for pixels on rounded silhouettes.
-const SINGLE: usize = 250;
+pub(super) const SINGLE: usize = 250;
 /// The same for 7 bits, when the eighth is the sticky one.
 const FOLDED: usize = 120;
 
@@ -36,6 +36,25 @@ struct Item {
 }
 
 impl Batching {
+    /// Whether one batch will do for the planner's pairs of light `l` beside others on the device, which have at most so
+    /// many `layers`. Builds their sides.
+    pub fn has_room_for(
+        &mut self,
+        layers: usize,
+        frame: &Frame<'_>,
+        l: usize,
+        pairs: &mut [Pair],
+        placed: &[Placed],
+    ) -> bool {
+        pairs.iter_mut().for_each(Pair::unite);
+        self.light = None;
+        let casting: usize = pairs.iter().filter(|p| p.is_planned()).map(|p| p.casting).sum();
+        let kind = &frame.lights[l].kind;
+        frame.counting == Counting::Raw
+            || casting + layers <= SINGLE
+            || layers < SINGLE && quickly_within(frame, kind, pairs, placed, &mut self.crossings, SINGLE - layers)
+    }
+
     /// Sets the batches of `pairs`, all of light `l`, one per caster. Builds their sides.
     pub fn divide(&mut self, frame: &Frame<'_>, l: usize, pairs: &mut [Pair], placed: &[Placed]) {
         let active = |pair: &Pair| pair.role != Role::Idle;
@@ -65,7 +84,7 @@ impl Batching {
         self.light = Some(kind);
         self.orthographic = orthographic;
 
-        self.divided = !quickly_within(frame, &kind, pairs, placed, &mut self.crossings) && {
+        self.divided = !quickly_within(frame, &kind, pairs, placed, &mut self.crossings, SINGLE) && {
             let (items, cones, shape) = cones(frame, &kind, pairs, placed);
             let within = stack::is_within(&cones, &shape, SINGLE);
             if !within {
@@ -79,13 +98,14 @@ impl Batching {
     }
 }
 
-/// Whether silhouettes alone prove that no ray crosses more layers than a stencil can count.
+/// Whether silhouettes alone prove that no ray crosses more than `most` layers.
 fn quickly_within(
     frame: &Frame<'_>,
     kind: &LightKind,
     pairs: &mut [Pair],
     placed: &[Placed],
     sum: &mut Crossings,
+    most: usize,
 ) -> bool {
     let mut bounds = Bounds::EMPTY;
     for caster in placed.iter().filter(|p| !p.world.is_empty()) {
@@ -94,22 +114,22 @@ fn quickly_within(
     }
     let lines = Lines::new(kind.homogeneous(), &bounds);
     sum.clear(meridians::COARSE);
-    let active = |(_, (pair, _)): &(usize, (&mut Pair, &Placed))| pair.role != Role::Idle;
-    for (c, (pair, caster)) in pairs.iter_mut().zip(placed).enumerate().filter(active) {
+    let planned = |(_, (pair, _)): &(usize, (&mut Pair, &Placed))| pair.is_planned();
+    for (c, (pair, caster)) in pairs.iter_mut().zip(placed).enumerate().filter(planned) {
         let topology = frame.casters[c].topology;
         // Batches would put sides between triangles that have none.
         pair.unite();
         pair.build_sides(topology);
         sum.merge(pair.crossings(topology, &caster.world_from_object, lines));
     }
-    if sum.bound() <= SINGLE {
+    if sum.bound() <= most {
         return true;
     }
     sum.clear(meridians::FINE);
-    for (c, (pair, caster)) in pairs.iter().zip(placed).enumerate().filter(|(_, (pair, _))| pair.role != Role::Idle) {
+    for (c, (pair, caster)) in pairs.iter().zip(placed).enumerate().filter(|(_, (pair, _))| pair.is_planned()) {
         pair.count_crossings(frame.casters[c].topology, &caster.world_from_object, lines, sum);
     }
-    sum.bound() <= SINGLE
+    sum.bound() <= most
 }
 
 /// Distributes casting triangles over batches.

@@ -5,10 +5,12 @@
 //! not move in its object space keeps its silhouette, its caps and their place in the index array.
 //!
 //! One light's casters pass these stages, which are McGuire et al. 2003, section 7, and more: [`reach`](self) of the
-//! light, parts off screen, receivers, occluders, facing, batches, z-pass or z-fail, caps.
+//! light, parts off screen, receivers, occluders, extraction by the device, facing, batches, z-pass or z-fail, caps.
 
+mod ball;
 mod batches;
 mod caps;
+mod extraction;
 mod meridians;
 mod near_count;
 mod occluders;
@@ -23,10 +25,11 @@ mod stats;
 mod store;
 mod technique;
 
+pub use extraction::{DarkCap, Extraction, LightCap};
 pub use stats::{Culled, LightStats, Triangles};
-pub use technique::{Counting, Measures, Technique, Tiles, UnknownTechnique, ZPass};
+pub use technique::{Counting, Measures, Silhouettes, Technique, Tiles, UnknownTechnique, ZPass};
 
-use crate::casting::ObjectLight;
+use crate::casting::{Casting, ObjectLight};
 use crate::scene::{Bounds, LightKind};
 use crate::scissor::Rectangle;
 use crate::topology::Topology;
@@ -105,6 +108,8 @@ pub struct Draw {
     pub scissor: Rectangle,
     /// Ranges into [`FramePlan::indices`].
     pub volume: Volume,
+    /// What the device makes of the caster instead, if `volume` is empty because the device finds its silhouette.
+    pub extraction: Option<Extraction>,
     /// Whether the caster's transform mirrors, so that outside is clockwise.
     pub mirrored: bool,
 }
@@ -126,6 +131,8 @@ pub struct LightPlan {
 pub struct FramePlan {
     /// Vertex indices as [`crate::volume`] defines them, in no particular order, with gaps.
     pub indices: Vec<u32>,
+    /// From which side parts cast, for [`Extraction`]s.
+    pub castings: Vec<Casting>,
     /// Volumes, grouped by light and batch.
     pub draws: Vec<Draw>,
     /// One entry per light of the frame.

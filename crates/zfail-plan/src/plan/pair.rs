@@ -1,6 +1,7 @@
 //! One light and one caster: facing, silhouette and caps, kept while the light stands still in object space.
 
 use super::caps::Clusters;
+use super::extraction::Extracted;
 use super::meridians::{self, Crossings, Lines};
 use super::near_count::{self, NearCount};
 use super::off_screen::Parts;
@@ -38,6 +39,13 @@ pub(super) struct Pair {
     pub start: NearCount,
     pub light: ObjectLight,
     mesh: u64,
+    /// Frames on end in each of which light or mesh were not those of the frame before.
+    pub moves: u32,
+    /// How far the light has moved in the last of them, object space; infinite for another mesh or kind of light.
+    pub step: f64,
+    /// Whether the device finds silhouette and caps, so that nothing of them is known here.
+    pub on_device: bool,
+    pub extracted: Extracted,
     /// Whether `weights` belong to `mesh`, `light` and `planar`.
     weighed: bool,
     castings: Vec<Casting>,
@@ -89,7 +97,13 @@ impl Pair {
     pub fn aim(&mut self, caster: &Placed, kind: &LightKind) -> Option<()> {
         let light = caster.object_light(kind)?;
         if self.mesh != caster.mesh || self.light != light {
+            let comparable = self.mesh == caster.mesh && self.light.w == light.w;
+            let step = (light - self.light).truncate().as_dvec3().length();
+            self.step = if comparable { step } else { f64::INFINITY };
             self.weighed = false;
+            self.moves = self.moves.saturating_add(1);
+        } else {
+            self.moves = 0;
         }
         if self.mesh != caster.mesh {
             self.now_visible.clear();
@@ -99,9 +113,19 @@ impl Pair {
         Some(())
     }
 
+    /// The mesh, by [`super::Caster::mesh`].
+    pub fn mesh(&self) -> u64 {
+        self.mesh
+    }
+
+    /// Whether the pair draws anything whose index lists are made here.
+    pub fn is_planned(&self) -> bool {
+        self.role != Role::Idle && !self.on_device
+    }
+
     /// Whether [`Self::weigh`] would have something to do.
     pub fn is_stale(&self, view: &View) -> bool {
-        self.role != Role::Idle && !(self.weighed && self.planar == is_planar(view))
+        self.is_planned() && !(self.weighed && self.planar == is_planar(view))
     }
 
     /// Decides the facing of every triangle, unless it is known.
@@ -141,7 +165,7 @@ impl Pair {
 
     /// Whether [`Self::build_sides`] has nothing to do.
     pub fn is_built(&self) -> bool {
-        self.built || self.role == Role::Idle
+        self.built || !self.is_planned()
     }
 
     /// Builds the sides of every batch (and every planar cap), unless they are known.
@@ -230,7 +254,9 @@ impl Pair {
     /// Whether [`Self::build_caps`] may have something to do.
     pub fn lacks_caps(&self, topology: &Topology) -> bool {
         let wanted = self.wanted(topology);
-        wanted.light_cap && !topology.twins.is_empty() || self.pieces().iter().any(|p| p.have.union(wanted) != p.have)
+        self.is_planned()
+            && (wanted.light_cap && !topology.twins.is_empty()
+                || self.pieces().iter().any(|p| p.have.union(wanted) != p.have))
     }
 
     /// Adds the caps that this frame draws to the sides, unless they are there.
@@ -342,8 +368,10 @@ impl Pair {
 
     /// One more than the last batch in which the pair draws anything.
     pub fn batches(&self) -> usize {
-        if self.role == Role::Idle {
-            return 0;
+        match self.role {
+            Role::Idle => return 0,
+            Role::Active { .. } if self.on_device => return 1,
+            Role::Active { .. } => {}
         }
         self.pieces().last().map_or(0, |p| p.batch as usize + 1)
     }

@@ -3,6 +3,7 @@
 //! In: a frame. Out: the plan. Scratch memory is kept, so that a frame allocates nothing once its like has been planned.
 
 use super::batches::Batching;
+use super::extraction;
 use super::near_count::NearCount;
 use super::occluders::Shadow;
 use super::off_screen::{self, Parts};
@@ -14,6 +15,7 @@ use super::receivers::Receivers;
 use super::store::Store;
 use super::{Counting, Culled, Draw, Frame, FramePlan, LightPlan, LightStats, Measures, PlanError, ZPass, caps};
 use crate::scissor::{self, Rectangle};
+use crate::volume::Volume;
 use glam::{DVec4, Vec4};
 use rayon::prelude::*;
 
@@ -23,6 +25,8 @@ pub struct Planner {
     /// By light and caster.
     pairs: Vec<Pair>,
     batching: Vec<Batching>,
+    /// By light, the most layers of pairs on the device.
+    layers: Vec<Option<usize>>,
     store: Store,
     plan: FramePlan,
     placed: Vec<Placed>,
@@ -55,7 +59,16 @@ impl Planner {
     /// # Errors
     /// A caster's transform that cannot be inverted, or more indices than 32 bits can count.
     pub fn plan(&mut self, frame: &Frame<'_>) -> Result<&FramePlan, PlanError> {
-        let outcome = self.fill(frame);
+        self.plan_extracting(frame, &[])
+    }
+
+    /// Plans `frame` for a device that can find the silhouettes of those casters that are `extractable`, of meshes without
+    /// coincident triangles; the rest of the slice may be missing. [`Measures::silhouettes`] says whether it is asked to.
+    ///
+    /// # Errors
+    /// As [`Self::plan`].
+    pub fn plan_extracting(&mut self, frame: &Frame<'_>, extractable: &[bool]) -> Result<&FramePlan, PlanError> {
+        let outcome = self.fill(frame, extractable);
         if outcome.is_err() {
             // Nothing half-planned may be drawn.
             *self = Self::default();
@@ -63,7 +76,7 @@ impl Planner {
         outcome.map(|()| &self.plan)
     }
 
-    fn fill(&mut self, frame: &Frame<'_>) -> Result<(), PlanError> {
+    fn fill(&mut self, frame: &Frame<'_>, extractable: &[bool]) -> Result<(), PlanError> {
         let measures = match frame.counting {
             Counting::Verdict => frame.measures,
             Counting::Raw => frame.measures.keeping_counts(),
@@ -78,16 +91,23 @@ impl Planner {
         self.batching.resize_with(lights, Batching::default);
         self.plan.lights.resize_with(lights, LightPlan::default);
         self.plan.draws.clear();
+        self.plan.castings.clear();
         self.store.begin(&mut self.plan.indices, &mut self.plan.changed);
         let mut placed = std::mem::take(&mut self.placed);
         placed.clear();
         placed.extend(frame.casters.iter().map(|caster| Placed::new(caster, frame.view)));
-        let outcome = self.fill_placed(frame, measures, &placed);
+        let outcome = self.fill_placed(frame, measures, extractable, &placed);
         self.placed = placed;
         outcome
     }
 
-    fn fill_placed(&mut self, frame: &Frame<'_>, measures: Measures, placed: &[Placed]) -> Result<(), PlanError> {
+    fn fill_placed(
+        &mut self,
+        frame: &Frame<'_>,
+        measures: Measures,
+        extractable: &[bool],
+        placed: &[Placed],
+    ) -> Result<(), PlanError> {
         let (casters, lights) = (placed.len(), frame.lights.len());
         if casters == 0 {
             for light in &mut self.plan.lights {
@@ -99,15 +119,10 @@ impl Planner {
         for l in 0..lights {
             self.choose(frame, measures, l, placed)?;
         }
-        self.in_parallel(
-            frame,
-            |pair, _| pair.is_stale(frame.view),
-            |pair, c| {
-                pair.weigh(frame.casters[c].topology, frame.view);
-                pair.build_sides(frame.casters[c].topology);
-            },
-        );
-        for (l, pairs) in self.pairs.chunks_mut(casters).enumerate() {
+        self.extract(frame, measures, extractable, placed);
+        self.weigh(frame);
+        // Where the device takes part, one batch is known to do.
+        for (l, pairs) in self.pairs.chunks_mut(casters).enumerate().filter(|&(l, _)| self.layers[l].is_none()) {
             self.batching[l].divide(frame, l, pairs, placed);
         }
         self.in_parallel(frame, |pair, _| !pair.is_built(), |pair, c| pair.build_sides(frame.casters[c].topology));
@@ -122,9 +137,42 @@ impl Planner {
             },
         );
         for l in 0..lights {
-            self.append(frame, l, placed)?;
+            self.append(frame, measures, l, placed)?;
         }
         Ok(())
+    }
+
+    /// Leaves silhouettes to the device where that is chosen and counts cannot wrap.
+    fn extract(&mut self, frame: &Frame<'_>, measures: Measures, extractable: &[bool], placed: &[Placed]) {
+        self.layers.clear();
+        let lights = self.pairs.chunks_mut(placed.len());
+        self.layers.extend(lights.map(|pairs| extraction::choose(frame, measures, extractable, pairs)));
+        if self.layers.iter().all(Option::is_none) {
+            return;
+        }
+        self.weigh(frame);
+        for (l, pairs) in self.pairs.chunks_mut(placed.len()).enumerate() {
+            let Some(layers) = self.layers[l] else { continue };
+            if !self.batching[l].has_room_for(layers, frame, l, pairs, placed) {
+                for pair in pairs.iter_mut().filter(|pair| pair.on_device) {
+                    pair.on_device = false;
+                    pair.extracted.give_up();
+                }
+                self.layers[l] = None;
+            }
+        }
+    }
+
+    /// Decides the facing of all triangles of pairs that stay here and builds their sides, where they are not known.
+    fn weigh(&mut self, frame: &Frame<'_>) {
+        self.in_parallel(
+            frame,
+            |pair, _| pair.is_stale(frame.view),
+            |pair, c| {
+                pair.weigh(frame.casters[c].topology, frame.view);
+                pair.build_sides(frame.casters[c].topology);
+            },
+        );
     }
 
     /// Runs `work` on every pair that wants it; on several threads only if there is anything to do.
@@ -278,10 +326,10 @@ impl Planner {
     }
 
     /// Appends the draws of one light, batch by batch, z-pass before z-fail.
-    fn append(&mut self, frame: &Frame<'_>, l: usize, placed: &[Placed]) -> Result<(), PlanError> {
+    fn append(&mut self, frame: &Frame<'_>, measures: Measures, l: usize, placed: &[Placed]) -> Result<(), PlanError> {
         let Self { pairs, plan, store, .. } = self;
         let pairs = &mut pairs[l * placed.len()..(l + 1) * placed.len()];
-        let FramePlan { indices, draws, lights, changed } = plan;
+        let FramePlan { indices, castings, draws, lights, changed } = plan;
         let light = &mut lights[l];
         for pair in pairs.iter() {
             if let Role::Active { parts, z_pass, .. } = pair.role
@@ -298,6 +346,22 @@ impl Planner {
                 for (c, pair) in pairs.iter_mut().enumerate() {
                     let Role::Active { within, z_pass, .. } = pair.role else { continue };
                     if z_pass != pass {
+                        continue;
+                    }
+                    if pair.on_device {
+                        let fan = extraction::may_fan(measures, &placed[c], pair.light);
+                        light.stats.extracted += 1;
+                        draws.push(Draw {
+                            caster: c as u32,
+                            light: pair.light,
+                            cap: Vec4::ZERO,
+                            z_pass,
+                            near_layers: 0,
+                            scissor: within,
+                            volume: Volume::default(),
+                            extraction: Some(pair.extraction(l as u32, fan, castings)),
+                            mirrored: placed[c].mirrored,
+                        });
                         continue;
                     }
                     for p in 0..pair.pieces().len() {
@@ -322,6 +386,7 @@ impl Planner {
                             near_layers,
                             scissor: within,
                             volume: drawn.shifted(base),
+                            extraction: None,
                             mirrored: placed[c].mirrored,
                         });
                     }
@@ -355,6 +420,9 @@ fn count_from_near_rectangle(
     let mut sum = 0;
     for (c, (pair, caster)) in pairs.iter_mut().zip(placed).enumerate() {
         let Role::Active { within, parts, z_pass: false } = pair.role else { continue };
+        if pair.on_device {
+            continue;
+        }
         let pyramid = pyramid_of(frame, caster, pair, scissor);
         let Some(start) = pair.near_count(frame.casters[c].topology, pyramid) else { continue };
         sum += start.layers;

@@ -59,6 +59,8 @@ pub struct LightStats {
     pub cases: [u32; 3],
     /// Layers over the whole near rectangle, of casters in case 1.
     pub near_count: u32,
+    /// Casters whose silhouettes the device finds. Only it knows how many triangles and vertices they have.
+    pub extracted: u32,
     /// Triangles submitted.
     pub triangles: Triangles,
     /// Vertex indices submitted.
@@ -76,7 +78,7 @@ impl LightStats {
     /// Whether anything may be in the light's shadow.
     #[must_use]
     pub fn has_shadow(&self) -> bool {
-        self.vertices > 0 || self.near_count > 0
+        self.vertices > 0 || self.near_count > 0 || self.extracted > 0
     }
 
     pub(super) fn cull(&mut self, reason: Culled) {

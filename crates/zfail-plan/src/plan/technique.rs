@@ -45,6 +45,7 @@ impl Technique {
             receivers: false,
             occluders: 0,
             tiles: Tiles::Never,
+            silhouettes: Silhouettes::Cpu,
         };
         let mcguire = Measures { reach: true, off_screen: true, z_pass: ZPass::ByCaster, fan: true, ..nothing };
         match self {
@@ -52,7 +53,8 @@ impl Technique {
             Self::Lengyel => Measures { reach: true, z_pass: ZPass::ByLight, ..nothing },
             Self::Mcguire => mcguire,
             Self::Auto => {
-                Measures { near_count: true, receivers: true, occluders: 8, tiles: Tiles::WhereCheaper, ..mcguire }
+                let (tiles, silhouettes) = (Tiles::WhereCheaper, Silhouettes::WhereCheaper);
+                Measures { near_count: true, receivers: true, occluders: 8, tiles, silhouettes, ..mcguire }
             }
         }
     }
@@ -77,6 +79,19 @@ pub struct Measures {
     pub occluders: u8,
     /// Where to count sides by tiles in a compute shader instead of rasterising them, if the host lets it.
     pub tiles: Tiles,
+    /// Where to find silhouettes.
+    pub silhouettes: Silhouettes,
+}
+
+/// Where the silhouettes and caps of casters are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Silhouettes {
+    /// On the CPU, all of them.
+    Cpu,
+    /// In compute shaders, those of all casters for which that can be done.
+    Gpu,
+    /// In compute shaders where the cost model of the device says that it saves time: for large casters whose light moves.
+    WhereCheaper,
 }
 
 /// When the sides of a light's z-pass casters are counted by tiles.
