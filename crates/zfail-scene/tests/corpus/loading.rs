@@ -11,7 +11,7 @@ use zfail_plan::scene::Scene;
 use zfail_scene::{Limits, complete, load_animated, write};
 
 /// Small, so that a file that asks for too much is found out soon.
-pub const LIMITS: Limits = Limits { bytes: 64 << 20, image_side: 1024 };
+pub const LIMITS: Limits = Limits { bytes: 64 << 20, image_side: 256 };
 
 /// What loading may take: the limit, and as much again for what is not charged to the byte.
 pub const MEMORY: usize = 2 * (64 << 20);
@@ -220,7 +220,8 @@ fn load(extension: &str, bytes: &[u8]) {
     }
 }
 
-fn assert_sound(scene: &Scene) {
+/// Asserts what the scene types promise.
+pub fn assert_sound(scene: &Scene) {
     if let Err(error) = write::check(scene) {
         panic!("{error}");
     }
