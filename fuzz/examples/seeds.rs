@@ -423,7 +423,7 @@ fn packed_buffers() -> Vec<(&'static str, Vec<u8>)> {
     };
     let buffers = [
         ("vertices-0", [0, 12, count], vertices(0, workspace)),
-        ("vertices-1", [128, 12, count], vertices(1, workspace)),
+        ("vertices-1", [135, 12, count], vertices(1, workspace)),
         ("exponential", [9, 12, count], {
             let filtered = encode_filter_exp(count, 12, 20, positions.as_flattened(), ExpMode::Separate, workspace);
             let encoding = VertexEncoding::new(0, 2).expect("a version that there is");

@@ -8,11 +8,11 @@ use std::path::Path;
 use std::process::Command;
 
 /// LLVM's coverage instrumentation as libFuzzer wants it.
-const COVERAGE: &str = "--cfg fuzzing -Cpasses=sancov-module -Ccodegen-units=1 \
+const COVERAGE: &str = "--cfg fuzzing -Cpasses=sancov-module \
                         -Cllvm-args=-sanitizer-coverage-level=4 \
                         -Cllvm-args=-sanitizer-coverage-inline-8bit-counters \
                         -Cllvm-args=-sanitizer-coverage-pc-table \
-                        -Cllvm-args=-sanitizer-coverage-trace-compares";
+                        -Cllvm-args=-sanitizer-coverage-trace-compares -Ccodegen-units=1";
 
 /// Fuzzes each target that is named, or all of them, for `seconds`, one after the other. What is found lies in
 /// `fuzz/artifacts`, and what was learned in `fuzz/corpus`.

@@ -45,3 +45,13 @@ fn seeds_show_what_they_are_for() {
     assert!(seed("skin").0.animations.len() == 1 && seed("skin").1.skins.len() == 1);
     assert!(seed("morph").1.channels[0].weights == 1);
 }
+
+#[test]
+fn the_checks_can_fail() {
+    let mut scene = zfail_scene::builtin::scene("open").unwrap();
+    loading::assert_sound(&scene);
+    scene.meshes[0].positions[0][1] = f32::NAN;
+    assert!(std::panic::catch_unwind(|| loading::assert_sound(&scene)).is_err());
+    assert!(Vec::<u8>::new().try_reserve(loading::MEMORY / 4).is_ok());
+    assert!(Vec::<u8>::new().try_reserve(loading::MEMORY).is_err(), "beyond the limit there is no memory");
+}
