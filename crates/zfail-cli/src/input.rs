@@ -6,6 +6,7 @@ use crate::names;
 use std::path::Path;
 use zfail_plan::scene::{MaskCasting, Scene};
 use zfail_render::{Gpu, GpuOptions};
+use zfail_scene::read::Fault;
 use zfail_scene::{Animated, FileInfo, builtin, cut};
 
 const BUILTIN: &str = "builtin:";
@@ -44,7 +45,13 @@ fn open(scene: &str, loading: &Loading) -> Result<(Animated, Option<FileInfo>), 
         Err(e) if !path.exists() && builtin_names().contains(&scene) => {
             Err(Error::failed(format!("{}; the built-in scene of that name is '{BUILTIN}{scene}'", chain(&e))))
         }
-        Err(e) => Err(Error::failed(chain(&e))),
+        Err(e) => {
+            let remedy = match e.fault {
+                Fault::TooLarge { .. } => " with --limit memory=SIZE or --limit image-side=PIXELS",
+                _ => "",
+            };
+            Err(Error::failed(chain(&e) + remedy))
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use crate::layouts::Layouts;
 use crate::shapes::Shapes;
 use crate::{Gpu, RenderError, Settings, check, materials};
 use glam::DVec3;
-use zfail::{Caster, Counting, Frame, LightStats, MeshId, ShadowLight, Shadows, Tiles};
+use zfail::{Caster, Counting, Frame, LightStats, MeshId, ShadowLight, Shadows, Silhouettes, Tiles};
 use zfail_plan::scene::{Bounds, Instance, Light, LightKind, Material, Mesh, Pose, Scene};
 use zfail_plan::topology::Topology;
 use zfail_plan::view::View;
@@ -39,6 +39,8 @@ pub struct SceneOnGpu {
     casters: Vec<Caster>,
     /// By mesh, those of which an instance casts.
     caster_meshes: Vec<Option<MeshId>>,
+    /// Whether anything has moved: only then may the device be asked for silhouettes.
+    posed: bool,
     /// By mesh, how many vertices bend.
     bending: Vec<Option<usize>>,
     /// By instance.
@@ -99,6 +101,7 @@ impl SceneOnGpu {
             shadows,
             casters,
             caster_meshes: ids,
+            posed: false,
             bending: scene.meshes.iter().map(|mesh| mesh.bends().then_some(mesh.positions.len())).collect(),
             caster_of,
         };
@@ -111,6 +114,7 @@ impl SceneOnGpu {
     pub fn pose(&mut self, gpu: &Gpu, pose: &Pose) -> Result<(), RenderError> {
         let bending = |mesh: usize| self.bending.get(mesh).copied().flatten();
         check::pose(pose, self.instances.len(), self.lights.len(), bending)?;
+        self.posed = true;
         for bent in &pose.bent {
             if let Some(buffers) = &self.meshes[bent.mesh] {
                 buffers.bend(gpu, bent);
@@ -189,6 +193,9 @@ impl SceneOnGpu {
         let lights: Vec<ShadowLight<'_>> =
             kinds.iter().zip(&excluded).map(|(&kind, excluded)| ShadowLight { kind, excluded }).collect();
         let (measures, receivers) = (settings.measures(), &[self.bounds]);
+        if self.posed && measures.silhouettes == Silhouettes::WhereCheaper {
+            self.shadows.set_cost_model(gpu.costs());
+        }
         let frame = Frame { view, casters: &self.casters, lights: &lights, receivers, measures, counting };
         self.shadows.prepare(&gpu.device, &gpu.queue, &frame)?;
         Ok((0..chosen.len()).map(|light| self.shadows.stats(light)).collect())

@@ -73,7 +73,7 @@ mod tests {
     fn everything_that_moves_a_vertex_counts() {
         let p = [1.0, 2.0, 3.0];
         let two = section(&[p, p]);
-        assert_eq!(alike(&[two.clone()]), [0, 0]);
+        assert_eq!(alike(std::slice::from_ref(&two)), [0, 0]);
         assert_eq!(alike(&[section(&[[0.0; 3], [-0.0; 3]])]), [0, 0]);
         assert_ne!(alike(&[section(&[p, [1.0, 2.0, 3.5]])]), [0, 0]);
 

@@ -179,7 +179,7 @@ mod tests {
     #[test]
     fn targets_come_before_joints() {
         let up = Target { positions: vec![[0.0, 0.0, 2.0]; 3], ..Target::default() };
-        let influences = Influences { width: 2, joints: vec![0, 7, 0, 7, 0, 7], weights: vec![1.0, 0.0].repeat(3) };
+        let influences = Influences { width: 2, joints: vec![0, 7, 0, 7, 0, 7], weights: [1.0, 0.0].repeat(3) };
         let section = Section { targets: vec![Target::default(), up], influences: Some(influences), ..corner() };
         // A quarter turn about x takes z to -y, and the normal with it.
         let turn = DAffine3::from_rotation_x(std::f64::consts::FRAC_PI_2);

@@ -121,7 +121,7 @@ impl Reader<'_> {
             clip.duration = times.last().map_or(clip.duration, |&last| clip.duration.max(last.into()));
             let Some(node) = self.target(channel, &path) else { continue };
             if channel.target.path == "weights" {
-                self.weights(&mut clip, node, sampler, times, [&path, &sampler_path])?;
+                self.weights(&mut clip, node, sampler, &times, [&path, &sampler_path])?;
             } else {
                 self.channel(&mut clip, node, channel, sampler, times, [&path, &sampler_path])?;
             }
@@ -162,7 +162,7 @@ impl Reader<'_> {
         clip: &mut Clip,
         node: usize,
         sampler: &schema::AnimationSampler,
-        times: Arc<[f32]>,
+        times: &Arc<[f32]>,
         [path, sampler_path]: [&str; 2],
     ) -> Result<()> {
         let output = format!("{sampler_path}.output");

@@ -44,6 +44,10 @@ impl Budget {
     }
 
     pub fn exceeded(&self, element: String) -> Fault {
-        Fault::TooLarge { element, limit: format!("{} MiB", self.limits.bytes >> 20) }
+        let limit = match self.limits.bytes {
+            bytes @ 0..1_048_576 => format!("{bytes} bytes"),
+            bytes => format!("{} MiB", bytes >> 20),
+        };
+        Fault::TooLarge { element, limit }
     }
 }
