@@ -195,17 +195,17 @@ pub struct Sequence {
 pub struct Loading {
     /// Refuse scenes beyond this; repeat it for several. memory=SIZE is what all data of a scene may take while it is
     /// loaded, such as 512MiB or 16GiB (8GiB unless given), image-side=PIXELS the width and height of an image (16384).
-    #[arg(long = "limit", value_name = "NAME=VALUE", value_parser = Limit::parse)]
+    #[arg(help_heading = "Loading", long = "limit", value_name = "NAME=VALUE", value_parser = Limit::parse)]
     limits: Vec<Limit>,
     /// Shadows of masked surfaces (foliage, fences): off (none), solid (of their whole triangles), or cut=PIXELS (of the
     /// mask's shape: triangles are cut along the contour of alpha on load, at most PIXELS of the texture's pixels off).
-    #[arg(long, value_name = "off|solid|cut=PIXELS", default_value = "cut=1", value_parser = AlphaShadows::parse)]
+    #[arg(help_heading = "Loading", long, value_name = "off|solid|cut=PIXELS", default_value = "cut=1", value_parser = AlphaShadows::parse)]
     pub alpha_shadows: AlphaShadows,
     /// Let blended and transmissive surfaces cast shadows as if they were solid.
-    #[arg(long)]
+    #[arg(help_heading = "Loading", long)]
     pub blended_shadows: bool,
     /// Show the file with the materials of this variant, by name or index, instead of its default ones.
-    #[arg(long, value_name = "NAME|N")]
+    #[arg(help_heading = "Loading", long, value_name = "NAME|N")]
     pub variant: Option<String>,
 }
 
