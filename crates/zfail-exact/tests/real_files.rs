@@ -1,5 +1,6 @@
 //! Real models and the built-in scenes: no pixel may be wrong, with a light inside the model's bounds, one outside and
-//! a sun, whatever lights the file has of its own. Animated models are checked at rest and at two moments.
+//! a sun, whatever lights the file has of its own. Animated models are checked at rest and at two
+//! moments; masked triangles are cut.
 //!
 //! Models are looked for in `ZFAIL_ASSETS`, or in `shared/assets` beside the checkout, and skipped where absent.
 //! `ZFAIL_SIZE=WxH` sets the size of the images, `ZFAIL_MODEL` limits the test to one file, `ZFAIL_FILES` (a list like
@@ -12,9 +13,9 @@ use zfail_exact::tally::Tally;
 use zfail_plan::glam::DVec3;
 use zfail_plan::scene::{Light, LightKind, LightShape, Mesh, Scene};
 use zfail_render::{Gpu, GpuOptions, Settings, Technique, Tiles};
-use zfail_scene::Limits;
+use zfail_scene::{Limits, cut};
 
-const MODELS: [&str; 20] = [
+const MODELS: [&str; 24] = [
     "godot-room/godot-room.glb",
     "garage/garage.glb",
     "zdm2/zdm2.glb",
@@ -35,6 +36,10 @@ const MODELS: [&str; 20] = [
     "SimpleInstancing/SimpleInstancing.glb",
     "cat-statue/cat-statue.glb",
     "truck-town/truck-town.glb",
+    "helicopter-draco/helicopter-draco.glb",
+    "ingenuity/ingenuity.glb",
+    "dream-apartment/dream-apartment.glb",
+    "cesium-balloon-ktx2/cesium-balloon-ktx2.glb",
 ];
 
 fn size() -> [u32; 2] {
@@ -106,7 +111,8 @@ fn no_pixel_of_a_real_model_is_wrong() {
             println!("skipped: {model} is not there");
             continue;
         }
-        let (animated, _) = zfail_scene::load_animated(&path, &Limits::default()).unwrap_or_else(|e| panic!("{e}"));
+        let (mut animated, _) = zfail_scene::load_animated(&path, &Limits::default()).unwrap_or_else(|e| panic!("{e}"));
+        animated.cut_masked(1.0, cut::Limits::default());
         let mut scene = animated.scene.clone();
         zfail_scene::complete(&mut scene);
         let test = test_lights(&scene);
@@ -131,8 +137,8 @@ fn no_pixel_of_other_files_is_wrong() {
     let gpu = Gpu::new(&GpuOptions::default()).expect("a graphics adapter");
     let (mut masks, mut failures) = (Tally::default(), Vec::new());
     for path in env::split_paths(&files) {
-        let animated =
-            zfail_scene::load_animated(&path, &Limits::default()).map(|(a, _)| a).unwrap_or_else(|e| panic!("{e}"));
+        let (mut animated, _) = zfail_scene::load_animated(&path, &Limits::default()).unwrap_or_else(|e| panic!("{e}"));
+        animated.cut_masked(1.0, cut::Limits::default());
         let mut scene = animated.scene.clone();
         zfail_scene::complete(&mut scene);
         let name = path.file_stem().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
@@ -152,7 +158,8 @@ fn no_pixel_of_a_built_in_scene_is_wrong() {
     let only = env::var("ZFAIL_MODEL").unwrap_or_default();
     let (mut masks, mut failures) = (Tally::default(), Vec::new());
     for entry in zfail_scene::builtin::SCENES.iter().filter(|e| e.name.contains(&only)) {
-        let animated = zfail_scene::builtin::animated(entry.name).expect("a name from the list");
+        let mut animated = zfail_scene::builtin::animated(entry.name).expect("a name from the list");
+        animated.cut_masked(1.0, cut::Limits::default());
         let mut scene = animated.scene.clone();
         for camera in 0..scene.cameras.len() {
             judge(&gpu, entry.name, &scene, camera, &mut masks, &mut failures);
