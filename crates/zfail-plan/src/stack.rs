@@ -6,7 +6,8 @@
 //!
 //! E&K section 3.1 and McGuire et al. section 4 ask for enough stencil bits instead.
 //!
-//! The bound is a quadtree over directions: a cell that at most `limit` triangles overlap is done, others are divided.
+//! The bound is a quadtree over directions: a cell that at most `limit` triangles overlap is done, others are divided. Whole
+//! bodies whose layers are known can stand for their triangles, where they are many.
 //! Overlap is decided conservatively, so the bound can only be too high, which costs time and never a pixel.
 
 use glam::{DVec3, DVec4};
@@ -14,6 +15,9 @@ use glam::{DVec3, DVec4};
 /// Triangles as cones of directions seen from the light: the rays from it that cross a triangle are exactly the
 /// non-negative combinations of its three vectors.
 pub type Cone = [DVec3; 3];
+
+/// Relative error of a direction, far above that of f64.
+const MARGIN: f64 = 1e-9;
 
 /// Divisions after which a cell counts as indivisible: about 10^-6 of a cube face.
 const DEPTH: u32 = 20;
@@ -23,11 +27,61 @@ const DEPTH: u32 = 20;
 /// A directional light sees triangles in parallel projection; `frame` maps its plane to a bounded square.
 #[must_use]
 pub fn cone(corners: [DVec3; 3], light: DVec4, frame: &Frame) -> Cone {
-    match frame {
-        Frame::Sphere => corners.map(|p| p * light.w - light.truncate()),
-        Frame::Plane { u, v, center, scale } => {
-            corners.map(|p| DVec3::new((p.dot(*u) - center.0) * scale, (p.dot(*v) - center.1) * scale, 1.0))
-        }
+    corners.map(|p| frame.direction(p, light))
+}
+
+/// A body as seen from the light.
+#[derive(Clone, Copy, Debug)]
+pub struct Body {
+    directions: [DVec3; 8],
+    /// How many of its layers a ray from the light can cross.
+    layers: usize,
+}
+
+impl Body {
+    /// A body within the hull of `corners`, of which no ray crosses more than so many layers.
+    #[must_use]
+    pub fn new(corners: [DVec3; 8], layers: usize, light: DVec4, frame: &Frame) -> Self {
+        Self { directions: corners.map(|p| frame.direction(p, light)), layers }
+    }
+}
+
+/// What rays from the light may cross.
+pub trait Obstacle {
+    /// With all directions turned from cube face `face` towards +z.
+    #[must_use]
+    fn turned(&self, face: usize) -> Self;
+    /// Whether it may share a direction with a cell.
+    fn overlaps(&self, cell: &Cell) -> bool;
+    /// How often one ray can cross it.
+    fn layers(&self) -> usize;
+}
+
+impl Obstacle for Cone {
+    fn turned(&self, face: usize) -> Self {
+        self.map(|h| turn(h, face))
+    }
+
+    fn overlaps(&self, cell: &Cell) -> bool {
+        cell.overlaps(self)
+    }
+
+    fn layers(&self) -> usize {
+        1
+    }
+}
+
+impl Obstacle for Body {
+    fn turned(&self, face: usize) -> Self {
+        Self { directions: self.directions.map(|h| turn(h, face)), layers: self.layers }
+    }
+
+    fn overlaps(&self, cell: &Cell) -> bool {
+        !cell.is_beside(&self.directions)
+    }
+
+    fn layers(&self) -> usize {
+        self.layers
     }
 }
 
@@ -64,6 +118,16 @@ impl Frame {
         Self::Plane { u, v, center: (center.dot(u), center.dot(v)), scale }
     }
 
+    /// Where a ray from the light through `p` goes, in homogeneous coordinates of the frame.
+    fn direction(&self, p: DVec3, light: DVec4) -> DVec3 {
+        match self {
+            Self::Sphere => p * light.w - light.truncate(),
+            Self::Plane { u, v, center, scale } => {
+                DVec3::new((p.dot(*u) - center.0) * scale, (p.dot(*v) - center.1) * scale, 1.0)
+            }
+        }
+    }
+
     fn faces(&self) -> usize {
         match self {
             Self::Sphere => 6,
@@ -72,18 +136,18 @@ impl Frame {
     }
 }
 
-/// Whether no ray crosses more than `limit` of `cones` (a "no" may be mistaken, a "yes" never is).
+/// Whether no ray crosses more than `limit` layers of `obstacles` (a "no" may be mistaken, a "yes" never is).
 #[must_use]
-pub fn is_within(cones: &[Cone], frame: &Frame, limit: usize) -> bool {
-    if cones.len() <= limit {
+pub fn is_within<O: Obstacle>(obstacles: &[O], frame: &Frame, limit: usize) -> bool {
+    if obstacles.iter().map(O::layers).sum::<usize>() <= limit {
         return true;
     }
     let mut stack = Vec::new();
     (0..frame.faces()).all(|face| {
-        let turned: Vec<Cone> = cones.iter().map(|cone| cone.map(|h| turn(h, face))).collect();
+        let turned: Vec<O> = obstacles.iter().map(|obstacle| obstacle.turned(face)).collect();
         let root = Cell { x: [-1.0, 1.0], y: [-1.0, 1.0] };
         stack.clear();
-        stack.extend((0..turned.len() as u32).filter(|&i| root.overlaps(&turned[i as usize])));
+        stack.extend((0..turned.len() as u32).filter(|&i| turned[i as usize].overlaps(&root)));
         let all = 0..stack.len();
         root.is_within(&turned, &mut stack, all, limit, DEPTH)
     })
@@ -102,23 +166,23 @@ fn turn(h: DVec3, face: usize) -> DVec3 {
 }
 
 /// A rectangle of the plane z = 1, standing for the pyramid of directions through it.
-#[derive(Clone, Copy)]
-struct Cell {
+#[derive(Clone, Copy, Debug)]
+pub struct Cell {
     x: [f64; 2],
     y: [f64; 2],
 }
 
 impl Cell {
     /// `members` of `stack` overlap this cell; children's members are pushed above them and popped again.
-    fn is_within(
+    fn is_within<O: Obstacle>(
         &self,
-        cones: &[Cone],
+        obstacles: &[O],
         stack: &mut Vec<u32>,
         members: std::ops::Range<usize>,
         limit: usize,
         depth: u32,
     ) -> bool {
-        if members.len() <= limit {
+        if stack[members.clone()].iter().map(|&i| obstacles[i as usize].layers()).sum::<usize>() <= limit {
             return true;
         }
         if depth == 0 {
@@ -130,21 +194,20 @@ impl Cell {
                 let child = Self { x, y };
                 let start = stack.len();
                 for i in members.clone() {
-                    if child.overlaps(&cones[stack[i] as usize]) {
+                    if obstacles[stack[i] as usize].overlaps(&child) {
                         stack.push(stack[i]);
                     }
                 }
                 let end = stack.len();
-                let within = child.is_within(cones, stack, start..end, limit, depth - 1);
+                let within = child.is_within(obstacles, stack, start..end, limit, depth - 1);
                 stack.truncate(start);
                 within
             })
         })
     }
 
-    /// Whether a cone and this cell may share a direction: separating planes through the apex, with a margin.
-    fn overlaps(&self, cone: &Cone) -> bool {
-        const MARGIN: f64 = 1e-9;
+    /// Whether all `directions` lie beside the cell, on one side.
+    fn is_beside(&self, directions: &[DVec3]) -> bool {
         let planes = [
             DVec3::new(1.0, 0.0, -self.x[0]),
             DVec3::new(-1.0, 0.0, self.x[1]),
@@ -152,8 +215,13 @@ impl Cell {
             DVec3::new(0.0, -1.0, self.y[1]),
             DVec3::Z,
         ];
-        let size = cone.iter().map(|h| h.abs().max_element()).fold(0.0, f64::max);
-        if planes.iter().any(|plane| cone.iter().all(|h| plane.dot(*h) < -MARGIN * size)) {
+        let size = directions.iter().map(|h| h.abs().max_element()).fold(0.0, f64::max);
+        planes.iter().any(|plane| directions.iter().all(|h| plane.dot(*h) < -MARGIN * size))
+    }
+
+    /// Whether a cone and this cell may share a direction: separating planes through the apex, with a margin.
+    fn overlaps(&self, cone: &Cone) -> bool {
+        if self.is_beside(cone) {
             return false;
         }
         let corners = [

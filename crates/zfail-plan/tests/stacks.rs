@@ -164,3 +164,53 @@ fn a_change_in_the_number_of_lights_keeps_deep_stacks_divided() {
         assert!(batches >= 1000 / 120, "{count} lights: {batches}");
     }
 }
+
+/// The corners of an upright box.
+fn corners(center: DVec3, half: f64) -> [DVec3; 8] {
+    Bounds { min: center - half, max: center + half }.corners()
+}
+
+#[test]
+fn the_layers_of_bodies_add_up_where_they_hide_one_another() {
+    for light in [lamp(), sun()].map(|light| light.homogeneous()) {
+        // Beside each other as the light sees them, and one behind the other.
+        let grid: Vec<DVec3> = (0..400).map(|i| DVec3::new(f64::from(i % 20), -3.0, f64::from(i / 20))).collect();
+        let tower: Vec<DVec3> = (0..20).map(|i| DVec3::new(0.0, -f64::from(i), 0.0)).collect();
+        let within = |centers: &[DVec3], limit| {
+            let bounds = Bounds::of(centers.iter().flat_map(|&center| corners(center, 0.2)));
+            let frame = stack::Frame::new(light, &bounds);
+            let body = |&center: &DVec3| stack::Body::new(corners(center, 0.2), 10, light, &frame);
+            stack::is_within(&centers.iter().map(body).collect::<Vec<_>>(), &frame, limit)
+        };
+        assert!(within(&grid, 60), "{light}");
+        assert!(!within(&grid, 9), "{light}: one alone has ten");
+        assert!(!within(&tower, 190), "{light}");
+        assert!(within(&tower, 200), "{light}");
+    }
+}
+
+/// How many batches `count` by `count` rings need, each a step from the one before.
+fn batches_of_rings(count: u32, step: DVec3, light: LightKind) -> usize {
+    let topology = topologies(&[shapes::torus(16, 8, 0.4)]).remove(0);
+    let casters: Vec<Caster<'_>> = (0..count * count)
+        .map(|i| {
+            let at = step * DVec3::new(f64::from(i % count), f64::from(i), f64::from(i / count)) - DVec3::Y * 9.0;
+            Caster { topology: &topology, mesh: 1, world_from_object: DAffine3::from_translation(at) }
+        })
+        .collect();
+    let world_from_view = DAffine3::from_translation(DVec3::new(0.0, 40.0, 90.0));
+    let projection = Projection::Perspective { yfov: 1.5, near: 0.1, far: None };
+    let view = View { world_from_view, projection, size: [64, 64] };
+    let lights = [ShadowLight { kind: light, excluded: &[] }];
+    let (measures, counting) = (Technique::EverittKilgard.into(), Counting::Verdict);
+    let frame = Frame { view: &view, casters: &casters, lights: &lights, receivers: &[], measures, counting };
+    Planner::new().plan(&frame).unwrap().lights[0].batches.len()
+}
+
+#[test]
+fn a_crowd_needs_one_batch_and_a_tower_does_not() {
+    for light in [lamp(), sun()] {
+        assert_eq!(batches_of_rings(24, DVec3::new(4.0, 0.0, 4.0), light), 1);
+        assert!(batches_of_rings(24, DVec3::new(0.0, -0.1, 0.0), light) > 1);
+    }
+}

@@ -84,7 +84,9 @@ impl Batching {
         self.light = Some(kind);
         self.orthographic = orthographic;
 
-        self.divided = !quickly_within(frame, &kind, pairs, placed, &mut self.crossings, SINGLE) && {
+        let quick = quickly_within(frame, &kind, pairs, placed, &mut self.crossings, SINGLE)
+            || bodies_within(frame, &kind, pairs, placed, &mut self.crossings);
+        self.divided = !quick && {
             let (items, cones, shape) = cones(frame, &kind, pairs, placed);
             let within = stack::is_within(&cones, &shape, SINGLE);
             if !within {
@@ -130,6 +132,34 @@ fn quickly_within(
         pair.count_crossings(frame.casters[c].topology, &caster.world_from_object, lines, sum);
     }
     sum.bound() <= most
+}
+
+/// Whether the layers of every caster by itself, and where casters hide one another from the light, prove it: for many
+/// casters that are small as the light sees them, of which lines right across the scene meet too many.
+fn bodies_within(
+    frame: &Frame<'_>,
+    kind: &LightKind,
+    pairs: &[Pair],
+    placed: &[Placed],
+    scratch: &mut Crossings,
+) -> bool {
+    let (light, eye) = (kind.homogeneous(), frame.view.eye());
+    let active = || pairs.iter().zip(placed).enumerate().filter(|(_, (pair, _))| pair.role != Role::Idle);
+    if active().nth(1).is_none() {
+        return false;
+    }
+    let mut bounds = Bounds::EMPTY;
+    active().flat_map(|(_, (_, caster))| caster.corners).for_each(|corner| bounds.add(corner + eye));
+    let shape = stack::Frame::new(light, &bounds);
+    let body = |(c, (pair, caster)): (usize, (&Pair, &Placed))| {
+        scratch.clear(meridians::COARSE);
+        let lines = Lines::of(light, eye, caster);
+        pair.count_crossings(frame.casters[c].topology, &caster.world_from_object, lines, scratch);
+        let layers = scratch.bound().min(pair.casting);
+        stack::Body::new(caster.corners.map(|corner| corner + eye), layers, light, &shape)
+    };
+    let bodies: Vec<stack::Body> = active().map(body).collect();
+    stack::is_within(&bodies, &shape, SINGLE)
 }
 
 /// Distributes casting triangles over batches.

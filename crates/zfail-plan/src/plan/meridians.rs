@@ -9,6 +9,7 @@
 //! The poles lie askew to the axes of the world, for edges along a line all count in one column, and upright edges abound.
 
 use super::near_count;
+use super::placed::Placed;
 use crate::casting::ObjectLight;
 use crate::scene::Bounds;
 use crate::topology::Topology;
@@ -26,7 +27,10 @@ const POLE: DVec3 = DVec3::new(0.260_604_5, 0.864_313_2, 0.430_226_6);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Lines {
     /// Great semicircles between both poles about a point light, by azimuth.
-    Meridians,
+    Meridians {
+        /// Of the columns' width on the whole circle, the part that they have. Narrow ones repeat, as parallels do.
+        zoom: f64,
+    },
     /// Parallel rays: by where they cross an axis, in steps. Columns repeat, which can only raise the bound.
     Parallels {
         /// Steps per unit along a direction across the light, world space.
@@ -38,7 +42,7 @@ impl Lines {
     /// The lines for a homogeneous light over casters within `bounds`.
     pub fn new(light: DVec4, bounds: &Bounds) -> Self {
         if light.w != 0.0 {
-            return Self::Meridians;
+            return Self::Meridians { zoom: 1.0 };
         }
         let (u, v) = light.truncate().normalize_or(DVec3::Y).any_orthonormal_pair();
         let across = u * 0.5547 + v * 0.8321;
@@ -47,6 +51,25 @@ impl Lines {
         let step = if extent > 0.0 && extent.is_finite() { (extent / 100.0).log2().ceil().exp2() } else { 1.0 };
         Self::Parallels { axis: across / step }
     }
+}
+
+impl Lines {
+    /// The lines for one caster alone, close enough to tell its own layers apart.
+    pub fn of(light: DVec4, eye: DVec3, caster: &Placed) -> Self {
+        if light.w == 0.0 {
+            return Self::new(light, &caster.world);
+        }
+        let azimuths = caster.corners.map(|corner| azimuth(corner + eye - light.truncate()));
+        let turns = azimuths.map(|a| (a - azimuths[0] + PI).rem_euclid(TAU) - PI);
+        let width = turns.iter().fold(0.0, |w, t| f64::max(w, *t)) - turns.iter().fold(0.0, |w, t| f64::min(w, *t));
+        Self::Meridians { zoom: (0.9 * TAU / width).clamp(1.0, 1e6) }
+    }
+}
+
+/// Of a direction from the light, about the poles.
+fn azimuth(direction: DVec3) -> f64 {
+    let (east, north) = POLE.any_orthonormal_pair();
+    direction.dot(north).atan2(direction.dot(east))
 }
 
 /// What one caster adds to every column.
@@ -77,21 +100,17 @@ impl Crossings {
         lines: Lines,
     ) {
         let columns = self.columns.len() as f64;
-        let (east, north) = POLE.any_orthonormal_pair();
         let origin = light.truncate().as_dvec3();
         let matrix = world_from_object.matrix3;
         for edge in silhouette {
             let ends = edge.map(|v| topology.position(v));
             match lines {
-                Lines::Meridians => {
-                    let [a, b] = ends.map(|p| {
-                        let d = matrix * (p - origin);
-                        d.dot(north).atan2(d.dot(east))
-                    });
+                Lines::Meridians { zoom } => {
+                    let [a, b] = ends.map(|p| azimuth(matrix * (p - origin)));
                     let turn = (b - a).rem_euclid(TAU);
                     // The arc of the edge is less than half a circle; through a pole it may be either half.
                     let (from, by) = if turn <= PI { (a, turn) } else { (b, TAU - turn) };
-                    let scale = columns / TAU;
+                    let scale = columns / TAU * zoom;
                     if by > 0.999 * PI || !by.is_finite() {
                         self.add(0.0, columns);
                     } else {
@@ -105,7 +124,7 @@ impl Crossings {
                 }
             }
         }
-        if lines == Lines::Meridians {
+        if matches!(lines, Lines::Meridians { .. }) {
             let object_from_world = matrix.inverse();
             for pole in [POLE, -POLE] {
                 let way = object_from_world * pole;
