@@ -48,12 +48,6 @@ impl Volume {
         }
     }
 
-    /// Whether nothing is drawn.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.sides.start == self.light_cap_reversed.end
-    }
-
     /// Triangles in sides, dark cap and light cap.
     #[must_use]
     pub fn triangles(&self) -> [u32; 3] {

@@ -17,5 +17,4 @@ pub use animate::{Animated, Animation};
 pub use complete::complete;
 pub use read::{
     FileInfo, Limits, LoadError, Treatment, extension_treatment, load, load_animated, load_variant, load_with,
-    load_with_info,
 };

@@ -117,18 +117,10 @@ pub fn load(path: &Path) -> std::result::Result<Scene, LoadError> {
 /// # Errors
 /// As [`load`].
 pub fn load_with(path: &Path, limits: &Limits) -> std::result::Result<Scene, LoadError> {
-    load_with_info(path, limits).map(|(scene, _)| scene)
+    load_animated(path, limits).map(|(animated, _)| animated.scene)
 }
 
-/// [`load_with`] that also tells what the file says about itself.
-///
-/// # Errors
-/// As [`load`].
-pub fn load_with_info(path: &Path, limits: &Limits) -> std::result::Result<(Scene, FileInfo), LoadError> {
-    load_animated(path, limits).map(|(animated, info)| (animated.scene, info))
-}
-
-/// [`load_with_info`] with the file's animations.
+/// [`load_with`] with the file's animations and what it says about itself.
 ///
 /// # Errors
 /// As [`load`].
