@@ -29,6 +29,7 @@ pub(super) fn read(bytes: &[u8], folder: &Path, budget: &Budget) -> Result<Plain
     budget.charge(bytes.len() as u64, 6, || "the file".into())?;
     let (text, cost) = plain_lines(bytes);
     budget.charge(cost, 1, || "the file".into())?;
+    check_corners(&text)?;
     let library = Library::new(folder, budget);
     let models = parse(&text, &library)?;
     let (library, mut notices) = library.finish();
@@ -143,6 +144,31 @@ fn plain_lines(bytes: &[u8]) -> (String, u64) {
         }
     }
     (plain, cost)
+}
+
+/// Refuses corners before the first vertex or beyond all that fit 32 bits: `tobj` multiplies them before it looks.
+fn check_corners(text: &str) -> Result<()> {
+    // Positions, texture coordinates and normals so far, to which negative numbers are relative.
+    let mut counts = [0_i64; 3];
+    for (i, line) in text.lines().enumerate() {
+        let mut words = line.split_ascii_whitespace();
+        match words.next() {
+            Some("v") => counts[0] += 1,
+            Some("vt") => counts[1] += 1,
+            Some("vn") => counts[2] += 1,
+            Some("f" | "l" | "p") => {
+                let possible = |(number, count): (&str, i64)| {
+                    number.parse().map_or(true, |number: i64| (-count..=i64::from(u32::MAX)).contains(&number))
+                };
+                if let Some(corner) = words.find(|corner| !corner.split('/').zip(counts).all(possible)) {
+                    let problem = format!("the corner {corner} is before the first or beyond the last that can be");
+                    return Err(malformed(FORMAT, format!("line {}", i + 1), problem));
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 fn parse(text: &str, library: &Library<'_>) -> Result<Vec<Model>> {

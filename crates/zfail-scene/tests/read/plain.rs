@@ -127,6 +127,8 @@ fn obj_damage() {
     let with = |from: &str, to: &str, expected: &str| fails(&[("a.obj", OBJ.replace(from, to).as_bytes())], expected);
     with("v 1 1 0", "v 1 x 0", "line 6 or the group before it: ");
     with("v 1 1 0", "v 1 nan 0", "vertex ");
+    with("f -4", "f -9999/-4", "line 17: the corner -9999/-4");
+    with("f -4", "f 1/9223372036854775807", "line 17: the corner 1/9223372036854775807");
     with("f -4", "f 99", "line 19 or the group before it: ");
     with("f ", "# ", "the file: has no faces");
     fails(&[("a.obj", b"")], "the file: has no faces");
