@@ -105,7 +105,7 @@ pub struct Info {
 /// `zfail bench`
 #[derive(Args, Debug)]
 pub struct Bench {
-    /// .glb or .gltf files, or builtin:NAME; a fixed set of built-in scenes if there is none. The first animation is
+    /// .glb, .gltf, .obj, .stl or .ply files, or builtin:NAME; a fixed set of built-in scenes if there is none. The first animation is
     /// played, as the first camera sees it.
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<String>,
@@ -159,7 +159,7 @@ pub struct Gallery {
 /// The scene that a command works on.
 #[derive(Args, Clone, Debug)]
 pub struct SceneArg {
-    /// A .glb or .gltf file, or builtin:NAME.
+    /// A .glb, .gltf, .obj, .stl or .ply file, or builtin:NAME.
     #[arg(value_name = "SCENE")]
     pub scene: String,
     #[command(flatten)]

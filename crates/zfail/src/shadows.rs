@@ -84,20 +84,7 @@ impl Shadows {
     /// Shadow determination on `device`, without any mesh yet.
     #[must_use]
     pub fn new(device: &Device) -> Self {
-        let entry = |binding| BindGroupLayoutEntry {
-            binding,
-            visibility: ShaderStages::VERTEX,
-            ty: BindingType::Buffer {
-                ty: BufferBindingType::Storage { read_only: true },
-                has_dynamic_offset: false,
-                min_binding_size: None,
-            },
-            count: None,
-        };
-        let layout = device.create_bind_group_layout(&BindGroupLayoutDescriptor {
-            label: Some("shadow volumes"),
-            entries: &[entry(0), entry(1)],
-        });
+        let layout = volume_layout(device);
         let arena = Arena::new(device);
         let buffers = FrameBuffers::new(device);
         let bindings = bind(device, &layout, &arena, &buffers);
@@ -493,6 +480,24 @@ impl<'p> PassState<'p> {
             pass.set_pipeline(pipeline);
         }
     }
+}
+
+/// What volumes are drawn with: positions, and the records of draws.
+pub(crate) fn volume_layout(device: &Device) -> BindGroupLayout {
+    let entry = |binding| BindGroupLayoutEntry {
+        binding,
+        visibility: ShaderStages::VERTEX,
+        ty: BindingType::Buffer {
+            ty: BufferBindingType::Storage { read_only: true },
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    };
+    device.create_bind_group_layout(&BindGroupLayoutDescriptor {
+        label: Some("shadow volumes"),
+        entries: &[entry(0), entry(1)],
+    })
 }
 
 fn bind(device: &Device, layout: &BindGroupLayout, arena: &Arena, buffers: &FrameBuffers) -> BindGroup {

@@ -9,7 +9,7 @@ use super::{Counting, Frame};
 use crate::scene::{Bounds, LightKind};
 use crate::stack::{self, Cone};
 use crate::view::Projection;
-use glam::DAffine3;
+use glam::{DAffine3, DVec4};
 
 /// Layers a stencil of 8 bits can tell from zero, less a few for pixels on rounded silhouettes.
 pub(super) const SINGLE: usize = 250;
@@ -148,9 +148,7 @@ fn bodies_within(
     if active().nth(1).is_none() {
         return false;
     }
-    let mut bounds = Bounds::EMPTY;
-    active().flat_map(|(_, (_, caster))| caster.corners).for_each(|corner| bounds.add(corner + eye));
-    let shape = stack::Frame::new(light, &bounds);
+    let shape = directions(light, active().map(|(_, (_, caster))| caster));
     let body = |(c, (pair, caster)): (usize, (&Pair, &Placed))| {
         scratch.clear(meridians::COARSE);
         let lines = Lines::of(light, eye, caster);
@@ -160,6 +158,17 @@ fn bodies_within(
     };
     let bodies: Vec<stack::Body> = active().map(body).collect();
     stack::is_within(&bodies, &shape, SINGLE)
+}
+
+/// How directions from a light to `casters` are told apart.
+fn directions<'a>(light: DVec4, casters: impl Iterator<Item = &'a Placed>) -> stack::Frame {
+    let mut bounds = Bounds::EMPTY;
+    for caster in casters.filter(|caster| !caster.bounds.is_empty()) {
+        let world = caster.bounds.transformed(&caster.world_from_object);
+        bounds.add(world.min);
+        bounds.add(world.max);
+    }
+    stack::Frame::new(light, &bounds)
 }
 
 /// Distributes casting triangles over batches.
@@ -190,13 +199,7 @@ fn cones(
 ) -> (Vec<Item>, Vec<Cone>, stack::Frame) {
     let light = kind.homogeneous();
     let active = || pairs.iter().zip(placed).enumerate().filter(|(_, (pair, _))| pair.role != Role::Idle);
-    let mut bounds = Bounds::EMPTY;
-    for (_, (_, caster)) in active().filter(|(_, (_, caster))| !caster.bounds.is_empty()) {
-        let world = caster.bounds.transformed(&caster.world_from_object);
-        bounds.add(world.min);
-        bounds.add(world.max);
-    }
-    let shape = stack::Frame::new(light, &bounds);
+    let shape = directions(light, active().map(|(_, (_, caster))| caster));
     let mut items = Vec::new();
     for (p, (pair, caster)) in active() {
         for triangle in (0..pair.weights.len()).filter(|&t| pair.weights[t] != 0) {

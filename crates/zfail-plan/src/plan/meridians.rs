@@ -51,9 +51,7 @@ impl Lines {
         let step = if extent > 0.0 && extent.is_finite() { (extent / 100.0).log2().ceil().exp2() } else { 1.0 };
         Self::Parallels { axis: across / step }
     }
-}
 
-impl Lines {
     /// The lines for one caster alone, close enough to tell its own layers apart.
     pub fn of(light: DVec4, eye: DVec3, caster: &Placed) -> Self {
         if light.w == 0.0 {

@@ -58,14 +58,19 @@ impl Pose {
         self.bent.resize_with(bending().count(), BentMesh::default);
         for (bent, (index, mesh)) in self.bent.iter_mut().zip(bending()) {
             bent.mesh = index;
-            bent.positions.clone_from(&mesh.positions);
-            bent.normals.clone_from(&mesh.normals);
-            bent.tangents.clone_from(&mesh.tangents);
+            bent.take(mesh);
         }
     }
 }
 
 impl BentMesh {
+    /// Becomes the vertices of `mesh` as it is, in the memory that it has.
+    pub fn take(&mut self, mesh: &Mesh) {
+        self.positions.clone_from(&mesh.positions);
+        self.normals.clone_from(&mesh.normals);
+        self.tangents.clone_from(&mesh.tangents);
+    }
+
     /// Whether these can be the vertices of `mesh`.
     #[must_use]
     pub fn fits(&self, mesh: &Mesh) -> bool {

@@ -117,12 +117,7 @@ impl Animated {
                     }
                 }
                 // It stays at rest.
-                None => {
-                    let mesh = &self.scene.meshes[body.mesh];
-                    bent.positions.clone_from(&mesh.positions);
-                    bent.normals.clone_from(&mesh.normals);
-                    bent.tangents.clone_from(&mesh.tangents);
-                }
+                None => bent.take(&self.scene.meshes[body.mesh]),
             }
         }
     }

@@ -88,8 +88,8 @@ impl Body {
             (t, tangents) = tangents.split_at_mut_checked(section.positions.len())?;
             section.pose(weights, &joints, p, n, t);
         }
-        // NaN is beyond measure too.
-        if !points.iter().all(|p| p.abs().max_element() <= MAX_COORDINATE) || points.iter().any(|p| p.is_nan()) {
+        // What is not a number is beyond measure too.
+        if !points.iter().all(|p| p.abs().cmple(DVec3::splat(MAX_COORDINATE)).all()) {
             return None;
         }
         let (origin, positions) = match self.frame {

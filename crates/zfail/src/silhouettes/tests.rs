@@ -1,6 +1,7 @@
 //! The device's lists hold what the planner's would, and are closed.
 
 use super::*;
+use crate::shadows::volume_layout;
 use bytemuck::Zeroable;
 use glam::{DVec4, Vec4};
 use std::collections::BTreeMap;
@@ -107,18 +108,7 @@ impl<'a> Bench<'a> {
         let mut arena = Arena::new(device);
         arena.add(device, queue, soup(1)).expect("room");
         let (slot, serial, _) = arena.add(device, queue, topology.clone()).expect("room");
-        let entry = |binding| BindGroupLayoutEntry {
-            binding,
-            visibility: ShaderStages::VERTEX,
-            ty: BindingType::Buffer {
-                ty: BufferBindingType::Storage { read_only: true },
-                has_dynamic_offset: false,
-                min_binding_size: None,
-            },
-            count: None,
-        };
-        let entries = &[entry(0), entry(1)];
-        let volume = device.create_bind_group_layout(&BindGroupLayoutDescriptor { label: None, entries });
+        let volume = volume_layout(device);
         Self { device, queue, arena, slot, serial, silhouettes: Silhouettes::new(device), volume }
     }
 
