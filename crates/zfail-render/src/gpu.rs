@@ -1,6 +1,6 @@
 //! The graphics device: in, what kind of adapter is wanted; out, a device and queue with the features that shadows use.
 
-use crate::RenderError;
+use crate::{RenderError, read_back};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use zfail::CostModel;
 
@@ -32,7 +32,7 @@ pub struct Gpu {
     /// Name, backend and driver of the adapter.
     pub info: wgpu::AdapterInfo,
     /// The format of every depth-stencil target.
-    pub(crate) depth_stencil: wgpu::TextureFormat,
+    pub depth_stencil: wgpu::TextureFormat,
     /// Whether GPU times can be trusted.
     pub(crate) timestamps: bool,
     /// Whether draws within a pass can be timed.
@@ -55,31 +55,35 @@ impl Gpu {
     /// # Errors
     /// If there is no such adapter, or none gives a device.
     pub fn new(options: &GpuOptions) -> Result<Self, RenderError> {
-        pollster::block_on(Self::open(options))
+        let mut search = Search { options, surface: None, names: Vec::new(), failure: None };
+        let found = options.stages().find_map(|backends| search.among(&instance(backends), backends));
+        found.map(|(gpu, _)| gpu).ok_or_else(|| search.failure())
     }
 
-    async fn open(options: &GpuOptions) -> Result<Self, RenderError> {
-        // GL is a last resort, and looking for it makes some drivers write to the terminal.
-        let stages = [options.backends & wgpu::Backends::PRIMARY, options.backends - wgpu::Backends::PRIMARY];
-        let mut names = Vec::new();
-        let mut failure = None;
-        for backends in stages.into_iter().filter(|stage| !stage.is_empty()) {
-            let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-                backends,
-                ..wgpu::InstanceDescriptor::new_without_display_handle()
-            });
-            let found = instance.enumerate_adapters(backends).await;
-            names.extend(found.iter().map(|a| describe(&a.get_info())));
-            let mut adapters: Vec<_> = found.into_iter().filter(|a| options.allows(&a.get_info())).collect();
-            adapters.sort_by_key(|a| rank(&a.get_info()));
-            for adapter in adapters {
-                match Self::from_adapter(&adapter).await {
-                    Ok(gpu) => return Ok(gpu),
-                    Err(message) => failure = Some(RenderError::NoDevice { adapter: adapter.get_info().name, message }),
-                }
-            }
-        }
-        Err(failure.unwrap_or_else(|| RenderError::NoAdapter { detail: options.missing(&names) }))
+    /// Opens the best adapter that `options` allows and that can present to `surface`; says how it presents.
+    ///
+    /// # Errors
+    /// As for [`Gpu::new`].
+    pub fn for_surface(
+        instance: &wgpu::Instance,
+        surface: &wgpu::Surface<'_>,
+        options: &GpuOptions,
+    ) -> Result<(Self, wgpu::SurfaceCapabilities), RenderError> {
+        let mut search = Search { options, surface: Some(surface), names: Vec::new(), failure: None };
+        let found = search.among(instance, options.backends);
+        found.map(|(gpu, adapter)| (gpu, surface.get_capabilities(&adapter))).ok_or_else(|| search.failure())
+    }
+
+    /// Every adapter that `options` allows, in the order in which [`Gpu::new`] tries them.
+    #[must_use]
+    pub fn adapters(options: &GpuOptions) -> Vec<wgpu::AdapterInfo> {
+        let of_stage = |backends| {
+            let found = pollster::block_on(instance(backends).enumerate_adapters(backends));
+            let mut infos: Vec<_> = found.iter().map(wgpu::Adapter::get_info).filter(|i| options.allows(i)).collect();
+            infos.sort_by_key(rank);
+            infos
+        };
+        options.stages().flat_map(of_stage).collect()
     }
 
     async fn from_adapter(adapter: &wgpu::Adapter) -> Result<Self, String> {
@@ -121,13 +125,27 @@ impl Gpu {
     }
 
     /// Waits until the device has done everything that was submitted.
-    pub(crate) fn wait(&self) -> Result<(), RenderError> {
+    ///
+    /// # Errors
+    /// If the device has failed.
+    pub fn wait(&self) -> Result<(), RenderError> {
         self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| RenderError::Device(e.to_string()))?;
         self.check()
     }
 
+    /// The texels of a single-sampled texture of a colour format, rows from top to bottom, without padding.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn read_texture(&self, texture: &wgpu::Texture) -> Result<Vec<u8>, RenderError> {
+        read_back::texture(self, texture)
+    }
+
     /// Reports the first error that the device has had since the last call.
-    pub(crate) fn check(&self) -> Result<(), RenderError> {
+    ///
+    /// # Errors
+    /// If there was one.
+    pub fn check(&self) -> Result<(), RenderError> {
         match self.failure.lock().unwrap_or_else(PoisonError::into_inner).take() {
             None => Ok(()),
             Some(message) => Err(RenderError::Device(message)),
@@ -135,7 +153,50 @@ impl Gpu {
     }
 }
 
+/// Tries adapters until one gives a device.
+struct Search<'s> {
+    options: &'s GpuOptions,
+    /// Where the adapter has to be able to present.
+    surface: Option<&'s wgpu::Surface<'s>>,
+    /// All adapters there are.
+    names: Vec<String>,
+    failure: Option<RenderError>,
+}
+
+impl Search<'_> {
+    fn among(&mut self, instance: &wgpu::Instance, backends: wgpu::Backends) -> Option<(Gpu, wgpu::Adapter)> {
+        let found = pollster::block_on(instance.enumerate_adapters(backends));
+        self.names.extend(found.iter().map(|a| describe(&a.get_info())));
+        let presents = |adapter: &wgpu::Adapter| self.surface.is_none_or(|s| adapter.is_surface_supported(s));
+        let allowed = |adapter: &wgpu::Adapter| self.options.allows(&adapter.get_info()) && presents(adapter);
+        let mut adapters: Vec<_> = found.into_iter().filter(allowed).collect();
+        adapters.sort_by_key(|a| rank(&a.get_info()));
+        adapters.into_iter().find_map(|adapter| match pollster::block_on(Gpu::from_adapter(&adapter)) {
+            Ok(gpu) => Some((gpu, adapter)),
+            Err(message) => {
+                self.failure = Some(RenderError::NoDevice { adapter: adapter.get_info().name, message });
+                None
+            }
+        })
+    }
+
+    /// Why nothing was found.
+    fn failure(self) -> RenderError {
+        self.failure.unwrap_or_else(|| RenderError::NoAdapter { detail: self.options.missing(&self.names) })
+    }
+}
+
+fn instance(backends: wgpu::Backends) -> wgpu::Instance {
+    wgpu::Instance::new(wgpu::InstanceDescriptor { backends, ..wgpu::InstanceDescriptor::new_without_display_handle() })
+}
+
 impl GpuOptions {
+    /// GL is a last resort, and looking for it makes some drivers write to the terminal.
+    fn stages(&self) -> impl Iterator<Item = wgpu::Backends> + use<> {
+        let stages = [self.backends & wgpu::Backends::PRIMARY, self.backends - wgpu::Backends::PRIMARY];
+        stages.into_iter().filter(|stage| !stage.is_empty())
+    }
+
     fn allows(&self, info: &wgpu::AdapterInfo) -> bool {
         let named =
             self.adapter.as_ref().is_none_or(|wanted| describe(info).to_lowercase().contains(&wanted.to_lowercase()));

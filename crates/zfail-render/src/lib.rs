@@ -50,6 +50,7 @@ pub use picture::Picture;
 pub use renderer::Renderer;
 pub use settings::{Exposure, Settings, Terminator};
 pub use stats::{FrameStats, LightFigures, TriangleFigures};
+pub use tone_map::displayed;
 pub use wgpu;
 pub use zfail;
 pub use zfail::{Silhouettes, Technique, Tiles, UnknownTechnique};

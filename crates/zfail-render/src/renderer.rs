@@ -35,7 +35,6 @@ pub struct Renderer<'g> {
     scene: SceneOnGpu,
     frame: FrameData,
     forward: ForwardPass,
-    /// By sample count.
     /// By sample count and whether verdicts become bits.
     verdicts: HashMap<(u32, bool), VerdictPass>,
     /// By sample count.
@@ -120,6 +119,13 @@ impl<'g> Renderer<'g> {
         let known = matches!(settings.exposure, Exposure::Ev(_));
         let finish = if known && direct { Finish::Forward } else { Finish::Darkroom };
         self.draw(view, settings, finish)
+    }
+
+    /// The picture that [`Renderer::render`] or [`Renderer::picture`] left on the device, `Rgba8Unorm` with sRGB encoded
+    /// by hand; to be sampled, copied, or drawn onto. Every new size has a texture of its own.
+    #[must_use]
+    pub fn shown(&self) -> Option<&wgpu::Texture> {
+        self.targets.as_ref().map(|targets| &targets.ldr)
     }
 
     fn draw(&mut self, view: &View, settings: &Settings, finish: Finish) -> Result<FrameStats, RenderError> {

@@ -1,8 +1,10 @@
-//! Tone mapping of a clear colour, which no shader sees: as in `tone_map.wgsl` (tested against it).
+//! Tone mapping of colours that no shader sees: as in `tone_map.wgsl` (tested against it).
 
 use crate::srgb;
 
-/// What the display gets for exposed `radiance`: tone-mapped, encoded, and opaque.
+/// What the display gets for exposed linear `radiance`, as in [`crate::Picture::hdr`]: tone-mapped, sRGB-encoded, opaque
+/// RGBA from 0 to 1.
+#[must_use]
 pub fn displayed(radiance: [f32; 3]) -> [f64; 4] {
     let [r, g, b] = tone_map(radiance).map(|c| f64::from(srgb::encoded(c)));
     [r, g, b, 1.0]

@@ -1,0 +1,1 @@
+//! Pictures of what shadow volumes do: overlays and figures.

@@ -1,0 +1,1 @@
+//! Every shadow method that the papers tell of, runnable side by side.
