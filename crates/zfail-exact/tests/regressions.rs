@@ -4,7 +4,7 @@ use zfail_exact::{bench, kinds::Kind};
 use zfail_render::{Gpu, GpuOptions, Settings};
 
 /// Kind, seed, size and story.
-const SCENES: [(Kind, u64, [u32; 2], &str); 6] = [
+const SCENES: [(Kind, u64, [u32; 2], &str); 7] = [
     (Kind::Soup, 1, [192, 120], "a culled twin's light cap lay before the visible triangle by rounding"),
     (Kind::Soup, 1003, [256, 160], "the same"),
     (Kind::NonManifold, 1073, [256, 160], "the same, in a sheet with a back"),
@@ -16,6 +16,12 @@ const SCENES: [(Kind, u64, [u32; 2], &str); 6] = [
         "counting from within a solid, its culled back faces were taken to hide its light cap",
     ),
     (Kind::EyeInside, 8, [256, 160], "the same"),
+    (
+        Kind::Orthographic,
+        910_012,
+        [256, 160],
+        "two planar volumes had sides along an edge in the midst of a lit slope, whose depths had to be equal",
+    ),
 ];
 
 #[test]

@@ -13,7 +13,8 @@ use zfail_plan::view::View;
 pub(crate) struct DrawRecord {
     clip_from_object: [[f32; 4]; 4],
     light: [f32; 4],
-    cap: [f32; 4],
+    reach: f32,
+    _pad: [f32; 3],
 }
 
 impl DrawRecord {
@@ -22,7 +23,8 @@ impl DrawRecord {
         Self {
             clip_from_object: view.clip_from_object(world_from_object).to_cols_array_2d(),
             light: draw.light.to_array(),
-            cap: draw.cap.to_array(),
+            reach: draw.reach,
+            _pad: [0.0; 3],
         }
     }
 }

@@ -5,8 +5,8 @@ struct Draw {
     clip_from_object: mat4x4<f32>,
     // Object space: (position, 1) or (towards the light, 0).
     light: vec4<f32>,
-    // Object space plane of a finite dark cap (orthographic views); zero normal for a cap at infinity.
-    cap: vec4<f32>,
+    // Distance from the light, or along its rays, of a finite dark cap (orthographic views); 0 for a cap at infinity.
+    reach: f32,
 }
 
 @group(0) @binding(0) var<storage, read> positions: array<f32>;
@@ -26,10 +26,12 @@ fn place(index: u32, instance: u32) -> vec4<f32> {
         return draw.clip_from_object * vec4<f32>(p, 1.0);
     }
     let away = p * draw.light.w - draw.light.xyz;
-    if any(draw.cap.xyz != vec3<f32>(0.0)) {
-        // To the plane dot(cap.xyz, x) = cap.w instead of infinity.
-        let rate = dot(draw.cap.xyz, away);
-        return draw.clip_from_object * vec4<f32>(p * rate + away * (draw.cap.w - dot(draw.cap.xyz, p)), rate);
+    if draw.reach > 0.0 {
+        if draw.light.w == 0.0 {
+            return draw.clip_from_object * vec4<f32>(p + away * draw.reach, 1.0);
+        }
+        let distance = length(away);
+        return draw.clip_from_object * vec4<f32>(draw.light.xyz * distance + away * draw.reach, distance);
     }
     var clip = draw.clip_from_object * vec4<f32>(away, 0.0);
     // A direction almost in the image plane: its w is all rounding, and some rasterisers lose such vertices.

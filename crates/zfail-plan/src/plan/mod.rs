@@ -35,7 +35,7 @@ use crate::scissor::Rectangle;
 use crate::topology::Topology;
 use crate::view::View;
 use crate::volume::Volume;
-use glam::{DAffine3, Vec4};
+use glam::DAffine3;
 use std::ops::Range;
 
 pub use stages::Planner;
@@ -98,8 +98,9 @@ pub struct Draw {
     pub caster: u32,
     /// Light in the caster's object space.
     pub light: ObjectLight,
-    /// Plane of the dark cap in object space, `dot(xyz, p) = w`; zero where the cap lies at infinity.
-    pub cap: Vec4,
+    /// To what distance from a point light, or along the rays of a directional one, vertices are extruded, object space; 0
+    /// for infinity.
+    pub reach: f32,
     /// Whether fragments count that pass the depth test instead of those that fail it.
     pub z_pass: bool,
     /// Layers of the volume over the near rectangle, from which z-pass has to start; part of [`LightStats::near_count`].

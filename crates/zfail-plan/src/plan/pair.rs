@@ -1,6 +1,6 @@
 //! One light and one caster: facing, silhouette and caps, kept while the light stands still in object space.
 
-use super::caps::Clusters;
+use super::caps;
 use super::extraction::Extracted;
 use super::meridians::{self, Crossings, Lines};
 use super::near_count::{self, NearCount};
@@ -14,7 +14,7 @@ use crate::scissor::Rectangle;
 use crate::topology::{Cover, NONE, Part, Topology};
 use crate::view::{Projection, View};
 use crate::volume::{self, Volume};
-use glam::{DAffine3, DVec3};
+use glam::DAffine3;
 
 /// What becomes of a pair this frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,7 +46,7 @@ pub(super) struct Pair {
     /// Whether the device finds silhouette and caps, so that nothing of them is known here.
     pub on_device: bool,
     pub extracted: Extracted,
-    /// Whether `weights` belong to `mesh`, `light` and `planar`.
+    /// Whether `weights` belong to `mesh`, `light` and `finite`.
     weighed: bool,
     castings: Vec<Casting>,
     pub weights: Vec<i8>,
@@ -56,9 +56,10 @@ pub(super) struct Pair {
     pub batch_of: Vec<u16>,
     /// Whether `pieces` belong to `weights` and `batch_of`.
     built: bool,
-    /// Whether dark caps are planes, because the view is orthographic.
-    planar: bool,
-    clusters: Clusters,
+    /// Whether dark caps lie at a finite distance, because the view is orthographic.
+    finite: bool,
+    /// How near to the light these would come at a distance of 1.
+    pub nearest: f64,
     /// The first `live` are in use.
     pieces: Vec<Piece>,
     live: usize,
@@ -75,13 +76,10 @@ pub(super) struct Pair {
     near_valid: bool,
 }
 
-/// A closed volume of some of the pair's triangles.
+/// A closed volume of some of the pair's triangles: those of a batch.
 #[derive(Debug, Default)]
 pub(super) struct Piece {
     pub batch: u16,
-    cluster: u16,
-    /// Normal of its planar dark cap, object space; `None` for a cap at infinity.
-    pub cap: Option<DVec3>,
     /// The parts that `volume` has.
     have: Parts,
     pub volume: Volume,
@@ -125,7 +123,7 @@ impl Pair {
 
     /// Whether [`Self::weigh`] would have something to do.
     pub fn is_stale(&self, view: &View) -> bool {
-        self.is_planned() && !(self.weighed && self.planar == is_planar(view))
+        self.is_planned() && !(self.weighed && self.finite == is_finite(view))
     }
 
     /// Decides the facing of every triangle, unless it is known.
@@ -133,10 +131,12 @@ impl Pair {
         if !self.is_stale(view) {
             return;
         }
-        // Clusters take the weight of triangles that no plane can cap.
-        self.planar = is_planar(view);
+        self.finite = is_finite(view);
         casting::castings(topology, self.light, &mut self.castings);
         casting::weights(topology, &self.castings, self.light, &mut self.weights);
+        if self.finite {
+            self.nearest = caps::nearest(topology, &mut self.weights, self.light);
+        }
         self.casting = self.weights.iter().filter(|&&c| c != 0).count();
         self.batch_of.clear();
         self.weighed = true;
@@ -168,20 +168,15 @@ impl Pair {
         self.built || !self.is_planned()
     }
 
-    /// Builds the sides of every batch (and every planar cap), unless they are known.
+    /// Builds the sides of every batch, unless they are known.
     pub fn build_sides(&mut self, topology: &Topology) {
         if self.is_built() {
             return;
         }
-        self.clusters.clear();
-        if self.planar {
-            self.clusters.fill(topology, &mut self.weights, self.light);
-        }
         let batches = self.batch_of.iter().copied().max().unwrap_or(0);
-        let clusters = self.clusters.normals.len().max(1) as u16;
         let mut used = 0;
-        for (batch, cluster) in (0..=batches).flat_map(|batch| (0..clusters).map(move |cluster| (batch, cluster))) {
-            self.mask(batch, cluster);
+        for batch in 0..=batches {
+            self.mask(batch);
             if self.masked.iter().all(|&c| c == 0) {
                 continue;
             }
@@ -189,11 +184,10 @@ impl Pair {
                 self.pieces.push(Piece::default());
             }
             let piece = &mut self.pieces[used];
-            (piece.batch, piece.cluster, piece.fresh) = (batch, cluster, true);
-            piece.cap = self.clusters.normals.get(usize::from(cluster)).copied();
+            (piece.batch, piece.fresh) = (batch, true);
             piece.have = Parts { sides: true, ..Parts::default() };
             piece.indices.clear();
-            volume::sides(topology, &self.masked, is_converging(self.light, self.planar), &mut piece.indices);
+            volume::sides(topology, &self.masked, is_converging(self.light, self.finite), &mut piece.indices);
             let end = piece.indices.len() as u32;
             piece.volume =
                 Volume { sides: 0..end, dark_cap: end..end, light_cap: end..end, light_cap_reversed: end..end };
@@ -214,11 +208,9 @@ impl Pair {
         &mut self.pieces[p]
     }
 
-    /// The weights of one batch and cluster, alone.
-    fn mask(&mut self, batch: u16, cluster: u16) {
-        let mine = |t: usize| {
-            self.batch_of.get(t).is_none_or(|&b| b == batch) && self.clusters.of.get(t).is_none_or(|&c| c == cluster)
-        };
+    /// The weights of one batch, alone.
+    fn mask(&mut self, batch: u16) {
+        let mine = |t: usize| self.batch_of.get(t).is_none_or(|&b| b == batch);
         self.masked.clear();
         self.masked.extend(self.weights.iter().enumerate().map(|(t, &c)| if mine(t) { c } else { 0 }));
     }
@@ -226,14 +218,14 @@ impl Pair {
     /// The number of layers over the near rectangle, if it is one number.
     pub fn near_count(&mut self, topology: &Topology, pyramid: Pyramid) -> Option<NearCount> {
         let [piece] = self.pieces() else { return None };
-        if piece.cap.is_some() || !self.batch_of.is_empty() {
+        if self.finite || !self.batch_of.is_empty() {
             return None;
         }
         if let Some(known) = self.near.as_ref().filter(|known| self.near_valid && known.0 == pyramid) {
             return known.1;
         }
         let sides = &piece.indices[..piece.volume.sides.end as usize];
-        let stride = volume::side_len(is_converging(self.light, self.planar));
+        let stride = volume::side_len(is_converging(self.light, self.finite));
         let count = near_count::near_count(topology, &self.weights, sides, stride, &pyramid);
         match &mut self.near {
             Some(near) => **near = (pyramid, count),
@@ -268,7 +260,7 @@ impl Pair {
         let same_twins = self.visible == self.now_visible;
         self.visible.clone_from(&self.now_visible);
         let outside = self.light.w != 0.0 && caster.is_strictly_outside(self.light);
-        let single = self.batch_of.is_empty() && self.clusters.of.is_empty();
+        let single = self.batch_of.is_empty();
         for p in 0..self.live {
             let piece = &self.pieces[p];
             let needed = piece.have.union(wanted);
@@ -276,8 +268,8 @@ impl Pair {
                 continue;
             }
             if !single {
-                let (batch, cluster) = (piece.batch, piece.cluster);
-                self.mask(batch, cluster);
+                let batch = piece.batch;
+                self.mask(batch);
             }
             let weights = if single { &self.weights } else { &self.masked };
             let piece = &mut self.pieces[p];
@@ -285,10 +277,10 @@ impl Pair {
             let mark = |indices: &Vec<u32>| indices.len() as u32;
             let indices = &mut piece.indices;
             indices.truncate(piece.volume.sides.end as usize);
-            if needed.dark_cap && !is_converging(self.light, self.planar) {
+            if needed.dark_cap && !is_converging(self.light, self.finite) {
                 let sides = indices.len() / volume::side_len(false);
                 let casting = weights.iter().filter(|&&c| c != 0).count();
-                if fan && outside && !self.planar && sides < casting {
+                if fan && outside && !self.finite && sides < casting {
                     volume::dark_fan(0..indices.len(), indices);
                 } else {
                     volume::dark_cap(topology, weights, indices);
@@ -358,7 +350,7 @@ impl Pair {
         lines: Lines,
         crossings: &mut Crossings,
     ) {
-        let stride = volume::side_len(is_converging(self.light, self.planar));
+        let stride = volume::side_len(is_converging(self.light, self.finite));
         let silhouette = self.pieces().iter().flat_map(|piece| {
             let sides = &piece.indices[..piece.volume.sides.end as usize];
             sides.chunks_exact(stride).map(|side| [side[0] >> 1, side[1] >> 1])
@@ -382,11 +374,12 @@ fn is_covered(part: &Part) -> bool {
     part.cover != Cover::Nowhere
 }
 
-fn is_planar(view: &View) -> bool {
+/// Whether infinity has no area on the image.
+fn is_finite(view: &View) -> bool {
     matches!(view.projection, Projection::Orthographic { .. })
 }
 
 /// Whether extruded vertices are one point.
-fn is_converging(light: ObjectLight, planar: bool) -> bool {
-    light.w == 0.0 && !planar
+fn is_converging(light: ObjectLight, finite: bool) -> bool {
+    light.w == 0.0 && !finite
 }

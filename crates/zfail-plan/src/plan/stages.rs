@@ -16,7 +16,7 @@ use super::store::Store;
 use super::{Counting, Culled, Draw, Frame, FramePlan, LightPlan, LightStats, Measures, PlanError, ZPass, caps};
 use crate::scissor::{self, Rectangle};
 use crate::volume::Volume;
-use glam::{DVec4, Vec4};
+use glam::DVec4;
 use rayon::prelude::*;
 
 /// Plans frame after frame, keeping memory and what has not changed.
@@ -354,7 +354,7 @@ impl Planner {
                         draws.push(Draw {
                             caster: c as u32,
                             light: pair.light,
-                            cap: Vec4::ZERO,
+                            reach: 0.0,
                             z_pass,
                             near_layers: 0,
                             scissor: within,
@@ -364,6 +364,8 @@ impl Planner {
                         });
                         continue;
                     }
+                    let to_object = placed[c].object_from_relative();
+                    let reach = caps::reach(&placed[c].bounds, pair.nearest, pair.light, frame.view, &to_object);
                     for p in 0..pair.pieces().len() {
                         let drawn = pair.drawn(&pair.pieces()[p]);
                         let object_light = pair.light;
@@ -377,11 +379,10 @@ impl Planner {
                             .ok_or(PlanError::TooManyIndices)?;
                         piece.fresh = false;
                         light.stats.add(drawn.triangles());
-                        let plane = |u| caps::plane(u, object_light, frame.view, &placed[c].object_from_relative());
                         draws.push(Draw {
                             caster: c as u32,
                             light: object_light,
-                            cap: piece.cap.map_or(Vec4::ZERO, plane),
+                            reach,
                             z_pass,
                             near_layers,
                             scissor: within,

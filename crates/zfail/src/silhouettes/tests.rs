@@ -136,7 +136,7 @@ impl<'a> Bench<'a> {
         let draw = Draw {
             caster: 5,
             light,
-            cap: Vec4::ZERO,
+            reach: 0.0,
             z_pass: false,
             near_layers: 0,
             scissor: [0; 4],
