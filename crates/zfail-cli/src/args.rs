@@ -2,7 +2,7 @@
 
 use crate::names;
 use crate::numbering::Frames;
-use crate::{adapters, verify};
+use crate::{adapters, compare, verify};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use std::ops::RangeInclusive;
@@ -38,6 +38,8 @@ pub enum Command {
     Bench(Bench),
     /// Check the picture against a ray-cast oracle, on this machine's adapter and driver.
     Verify(verify::Args),
+    /// Show every method of shadows on one scene side by side: pictures, a page, and a table of wrong pixels.
+    Compare(compare::Args),
     /// List the graphics adapters, in the order in which they are tried.
     Adapters(adapters::Args),
     /// Write the built-in scenes as .glb files with their pictures.

@@ -92,6 +92,8 @@ pub fn at_moment(animated: Animated, moment: &Moment) -> Result<Scene, Error> {
 pub struct Shot {
     /// At its moment.
     pub scene: Scene,
+    /// Name of the camera.
+    pub camera: String,
     /// The camera.
     pub view: View,
     /// Which lights shine, ascending.
@@ -108,7 +110,8 @@ pub fn shot(subject: &Subject, quiet: bool) -> Result<Shot, Error> {
     let camera = camera(&scene, &subject.camera)?;
     let view = scene.cameras[camera].view(subject.size.0, &scene.bounds());
     let lights = lights(&scene, &subject.lights)?;
-    Ok(Shot { scene, view, lights })
+    let camera = scene.cameras[camera].name.clone();
+    Ok(Shot { scene, camera, view, lights })
 }
 
 /// Index of the animation that `--animation` numbers or names, or 0, which may not exist.

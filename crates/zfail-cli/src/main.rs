@@ -6,13 +6,16 @@
 mod adapters;
 mod args;
 mod bench;
+mod compare;
 mod console;
 mod contact_sheet;
 mod encode;
 mod error;
 mod gallery;
+mod html;
 mod info;
 mod input;
+mod judged;
 mod mesa;
 mod names;
 mod numbering;
@@ -45,6 +48,7 @@ fn run(command: &Command) -> Result<(), error::Error> {
         Command::Info(args) => info::run(args),
         Command::Bench(args) => bench::run(args),
         Command::Verify(args) => verify::run(args),
+        Command::Compare(args) => compare::run(args),
         Command::Adapters(args) => adapters::run(args),
         Command::Gallery(args) => gallery::run(args),
     }

@@ -52,7 +52,7 @@ pub fn write(
     outputs.add(folder.join("report.json"), console::json(report)?.into_bytes());
     for (i, (light, truth)) in report.lights.iter().zip(truths).enumerate() {
         let mut add =
-            |name: &str, file: Vec<u8>| outputs.add(folder.join(format!("light-{}-{name}", light.light)), file);
+            |name: &str, file: Vec<u8>| outputs.add(folder.join(format!("light-{}-{name}", light.judged.light)), file);
         let expected = truth.mask();
         add("expected.png", encode::png_grey(size, &expected)?);
         add("checked.png", difference(truth, &expected)?);

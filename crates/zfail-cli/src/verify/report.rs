@@ -5,11 +5,11 @@
 
 use super::variants::Variant;
 use crate::error::Error;
+use crate::judged::JudgedLight;
 use serde::Serialize;
-use std::collections::BTreeMap;
-use zfail_oracle::{Doubt, SizeMismatch, Truth, Wrong};
+use zfail_oracle::{SizeMismatch, Truth, Wrong};
 use zfail_plan::closure::Closure;
-use zfail_plan::scene::{LightKind, Scene};
+use zfail_plan::scene::Scene;
 use zfail_render::{Aovs, Gpu};
 
 /// Wrong pixels that a report lists.
@@ -42,22 +42,8 @@ pub struct ClosureReport {
 /// One light.
 #[derive(Debug, Serialize)]
 pub struct LightReport {
-    /// Its number in the scene.
-    pub light: usize,
-    pub name: String,
-    pub kind: &'static str,
-    /// Pixels with a surface that were compared.
-    pub checked: usize,
-    /// Pixels without one that were compared.
-    pub background: usize,
-    /// Of the checked ones.
-    pub lit: usize,
-    /// Of the checked ones.
-    pub shadowed: usize,
-    /// Pixels left out, by reason.
-    pub excluded: BTreeMap<&'static str, usize>,
-    /// Why a pass would mean little.
-    pub proves_little: Option<String>,
+    #[serde(flatten)]
+    pub judged: JudgedLight,
     pub techniques: Vec<TechniqueReport>,
 }
 
@@ -172,45 +158,14 @@ impl LightReport {
         images: &[Aovs],
         i: usize,
     ) -> Result<Self, Error> {
-        // Only pixels that are left out, and those do not depend on what was rendered.
-        let ideal = truth.compare_mask(&truth.mask()).map_err(|e| Error::failed(e.to_string()))?;
-        let excluded = Doubt::ALL.into_iter().map(|doubt| (doubt.name(), ideal.excluded[doubt as usize]));
+        let judged = JudgedLight::new(scene, light, truth)?;
         let mut techniques = Vec::with_capacity(variants.len());
         for (variant, images) in variants.iter().zip(images) {
             let of_light = |kind: &[Vec<u8>]| kind.get(i).cloned().unwrap_or_default();
             let row = TechniqueReport::new(variant.name, truth, &of_light(&images.shadow), &of_light(&images.stencil));
             techniques.push(row.map_err(|e| Error::failed(format!("light {light}, {}: {e}", variant.name)))?);
         }
-        Ok(Self {
-            light,
-            name: scene.lights[light].name.clone(),
-            kind: match scene.lights[light].kind {
-                LightKind::Point { .. } => "point",
-                LightKind::Spot { .. } => "spot",
-                LightKind::Directional { .. } => "directional",
-            },
-            checked: ideal.checked,
-            background: ideal.background,
-            lit: ideal.lit,
-            shadowed: ideal.shadowed,
-            excluded: excluded.filter(|(_, pixels)| *pixels > 0).collect(),
-            proves_little: proves_little(&ideal),
-            techniques,
-        })
-    }
-}
-
-/// Why a comparison without mismatch would mean little; `None` if it means much.
-fn proves_little(report: &zfail_oracle::Report) -> Option<String> {
-    if let Err(over) = report.budget() {
-        return Some(over.to_string());
-    }
-    let few = |share: usize| (share as f64) < 0.001 * report.checked.max(1) as f64;
-    match (few(report.lit), few(report.shadowed)) {
-        (true, true) => Some("hardly any pixel is within the light's reach".to_owned()),
-        (true, false) => Some("hardly any pixel is lit".to_owned()),
-        (false, true) => Some("hardly any pixel is in shadow".to_owned()),
-        (false, false) => None,
+        Ok(Self { judged, techniques })
     }
 }
 
@@ -240,18 +195,7 @@ impl TechniqueReport {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use zfail_oracle::{Guards, Pixel};
-
-    /// A row of eight pixels: background, four lit ones, and three in shadow, the last of them doubtful.
-    fn truth() -> Truth {
-        let background =
-            Pixel { surface: false, reached: false, lit: false, count: 0, mask_doubt: None, count_doubt: None };
-        let lit = Pixel { surface: true, reached: true, lit: true, ..background };
-        let dark = Pixel { lit: false, count: 2, ..lit };
-        let doubtful = Pixel { mask_doubt: Some(Doubt::Boundary), count_doubt: Some(Doubt::Boundary), ..dark };
-        let pixels = vec![background, lit, lit, lit, lit, dark, dark, doubtful];
-        Truth { size: [8, 1], guards: Guards::default(), pixels }
-    }
+    use crate::judged::tests::truth;
 
     #[test]
     fn a_right_mask_passes_and_every_corrupted_one_does_not() {
@@ -274,18 +218,5 @@ mod tests {
         assert_eq!((found.wrong_pixels, found.wrong_counts), (0, 1));
         assert_eq!(found.examples, [Example { x: 5, y: 0, expected: 2, found: 3 }]);
         assert!(TechniqueReport::new("auto", &truth, &mask[1..], &counts).is_err());
-    }
-
-    #[test]
-    fn what_proves_little_says_why() {
-        let mut plenty = truth();
-        plenty.pixels = [vec![plenty.pixels[1]; 300], vec![plenty.pixels[5]; 100]].concat();
-        plenty.size = [400, 1];
-        let why = |truth: &Truth| proves_little(&truth.compare_mask(&truth.mask()).unwrap());
-        assert_eq!(why(&plenty), None);
-        let only = |pixel: Pixel| Truth { pixels: vec![pixel; 400], ..plenty.clone() };
-        assert_eq!(why(&only(plenty.pixels[0])), Some("hardly any pixel is in shadow".to_owned()));
-        assert_eq!(why(&only(plenty.pixels[399])), Some("hardly any pixel is lit".to_owned()));
-        assert!(why(&only(truth().pixels[7])).unwrap().contains("left out"));
     }
 }

@@ -134,7 +134,7 @@ mod tests {
         };
         let scene = zfail_scene::builtin::scene("jail").unwrap();
         let view = scene.cameras[0].view([48, 27], &scene.bounds());
-        let shot = Shot { scene, view, lights: vec![0] };
+        let shot = Shot { scene, camera: String::new(), view, lights: vec![0] };
         let topologies = zfail_plan::closure::topologies(&shot.scene).unwrap();
         let right = super::super::truth(&zfail_oracle::Oracle::new(&shot.scene), &shot, &topologies, 0);
         let mut inverted = right.clone();

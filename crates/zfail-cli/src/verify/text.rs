@@ -40,16 +40,16 @@ pub fn text(report: &Report) -> String {
 }
 
 fn of_light(light: &LightReport) -> String {
-    let mut text = String::new();
-    let excluded: usize = light.excluded.values().sum();
-    let reasons: Vec<String> = light.excluded.iter().map(|(reason, pixels)| format!("{reason} {pixels}")).collect();
+    let (mut text, judged) = (String::new(), &light.judged);
+    let excluded: usize = judged.excluded.values().sum();
+    let reasons: Vec<String> = judged.excluded.iter().map(|(reason, pixels)| format!("{reason} {pixels}")).collect();
     let reasons = if reasons.is_empty() { String::new() } else { format!(" ({})", reasons.join(", ")) };
     let _ = writeln!(
         text,
         "light {} '{}', {}: {} pixels checked ({} lit, {} in shadow), {excluded} left out{reasons}",
-        light.light, light.name, light.kind, light.checked, light.lit, light.shadowed
+        judged.light, judged.name, judged.kind, judged.checked, judged.lit, judged.shadowed
     );
-    if let Some(why) = &light.proves_little {
+    if let Some(why) = &judged.proves_little {
         let _ = writeln!(text, "  this picture proves little: {why}");
     }
     for row in &light.techniques {
@@ -69,6 +69,7 @@ fn of_light(light: &LightReport) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::judged::JudgedLight;
     use crate::verify::report::{ClosureReport, Example, Opinion, TechniqueReport};
 
     fn report(wrong_pixels: usize) -> Report {
@@ -83,15 +84,17 @@ mod tests {
             depth_format: "D".to_owned(),
             closure: ClosureReport { volumes: 3, triangles: 12, open_edges: 0 },
             lights: vec![LightReport {
-                light: 2,
-                name: "sun".to_owned(),
-                kind: "directional",
-                checked: 5,
-                background: 0,
-                lit: 3,
-                shadowed: 2,
-                excluded: [("boundary", 1)].into(),
-                proves_little: Some("it is small".to_owned()),
+                judged: JudgedLight {
+                    light: 2,
+                    name: "sun".to_owned(),
+                    kind: "directional",
+                    checked: 5,
+                    background: 0,
+                    lit: 3,
+                    shadowed: 2,
+                    excluded: [("boundary", 1)].into(),
+                    proves_little: Some("it is small".to_owned()),
+                },
                 techniques,
             }],
             passed: wrong_pixels == 0,
