@@ -11,11 +11,36 @@
 //! for Hardware-Accelerated Rendering", 2002; *McG* McGuire, Hughes, Egan, Kilgard & Everitt, "Fast, Practical and
 //! Robust Shadows", 2003.
 
+// The methods, in the order of history.
+mod heidmann;
+
+mod eye_count;
+
+mod carmack_preload;
+
+mod zfail_finite;
+
+mod near_caps;
+
+mod everitt_kilgard;
+
+mod lengyel;
+
+mod mcguire;
+
+mod ours;
+
+// What they share.
 mod error;
+mod geometry;
 mod method;
 mod methods;
 mod options;
+mod planned;
+mod procedure;
 mod shadow;
+mod stage;
+mod volumes;
 
 pub use error::{Error, Unavailable};
 pub use method::{Method, UnknownMethod};

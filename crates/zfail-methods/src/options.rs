@@ -5,7 +5,8 @@
 pub struct Options {
     /// For [`Method::ShadowMap`](crate::Method::ShadowMap).
     pub shadow_map: ShadowMapOptions,
-    /// For [`Method::FiniteZFail`](crate::Method::FiniteZFail), and the far plane also for the older methods.
+    /// For [`Method::FiniteZFail`](crate::Method::FiniteZFail) and
+    /// [`Method::CarmackPreload`](crate::Method::CarmackPreload).
     pub finite: FiniteOptions,
 }
 
@@ -34,8 +35,7 @@ impl Default for ShadowMapOptions {
 /// Where things end that the theory wants at infinity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FiniteOptions {
-    /// Distance of the far plane from the eye, scene units; `None`: just beyond the scene, as an engine of the day would
-    /// choose it.
+    /// Distance of the far plane from the eye, scene units; `None`: beyond the scene and all extruded vertices.
     pub far: Option<f64>,
     /// How far vertices are extruded away from the light, scene units; `None`: the diagonal of the scene.
     pub extrusion: Option<f64>,
