@@ -90,7 +90,7 @@ fn the_page_works_in_a_browser() {
     };
     let folder = tempfile::tempdir().unwrap();
     let (scene, size) = (env::var("ZFAIL_PAGE_SCENE"), env::var("ZFAIL_PAGE_SIZE"));
-    let (scene, size) = (scene.as_deref().unwrap_or("builtin:jail"), size.as_deref().unwrap_or("96x64"));
+    let (scene, size) = (scene.as_deref().unwrap_or("builtin:nested"), size.as_deref().unwrap_or("96x64"));
     zfail(folder.path(), &["compare", scene, "-o", "out", "--size", size, "--light", "0", "-q"]).ok();
     let out = folder.path().join("out");
     let (page, record) = (out.join("index.html"), out.join("compare.json"));
