@@ -25,7 +25,7 @@ console.log(JSON.stringify(problems));
 async function examine(path) {
   const wrong = [];
   const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
-  page.setDefaultTimeout(5000);
+  page.setDefaultTimeout(3000);
   page.on("console", (message) => message.type() === "error" && wrong.push("console: " + message.text()));
   page.on("pageerror", (error) => wrong.push("script: " + error.message));
   page.on("request", (request) => {
