@@ -30,6 +30,10 @@ mod mcguire;
 
 mod ours;
 
+mod shadow_map;
+
+mod ray_query;
+
 // What they share.
 mod error;
 mod geometry;
