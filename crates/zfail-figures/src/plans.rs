@@ -34,8 +34,8 @@ impl Plans {
     pub fn whole(&mut self, model: &mut Model, view: &View, lights: &[usize]) -> Result<Whole, Error> {
         let measures = Technique::EverittKilgard.measures();
         let plan = plan(&mut self.whole, model, view, lights, measures, Counting::Raw)?;
-        let planar = matches!(view.projection, Projection::Orthographic { .. });
-        Ok(Whole { triangles: volumes::triangles(plan, model), silhouettes: volumes::silhouettes(plan, model, planar) })
+        let finite = matches!(view.projection, Projection::Orthographic { .. });
+        Ok(Whole { triangles: volumes::triangles(plan, model), silhouettes: volumes::silhouettes(plan, model, finite) })
     }
 }
 

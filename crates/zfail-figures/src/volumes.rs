@@ -61,13 +61,13 @@ pub fn triangles(plan: &FramePlan, model: &Model) -> Vec<Triangle> {
 }
 
 /// The silhouette edges of every light, each once, however many sides it has.
-/// Under an orthographic view (`planar`) no sides converge.
-pub fn silhouettes(plan: &FramePlan, model: &Model, planar: bool) -> Vec<(usize, [DVec4; 2])> {
+/// Under an orthographic view (`finite`) no sides converge.
+pub fn silhouettes(plan: &FramePlan, model: &Model, finite: bool) -> Vec<(usize, [DVec4; 2])> {
     let mut edges = Vec::new();
     let casters = model.casters();
     draws(plan, model, |light, draw, place| {
         let topology = casters[draw.caster as usize].topology;
-        let stride = volume::side_len(draw.light.w == 0.0 && !planar);
+        let stride = volume::side_len(draw.light.w == 0.0 && !finite);
         let mut last = None;
         for side in indices(plan, &draw.volume.sides).chunks_exact(stride) {
             let edge = [side[0] >> 1, side[1] >> 1];
@@ -88,12 +88,9 @@ fn vertex(draw: &Draw, place: &Place, p: DVec3, extruded: bool) -> DVec4 {
     if !extruded {
         return place.point(p);
     }
-    let light = draw.light.as_dvec4();
-    let away = p * light.w - light.truncate();
-    let cap = draw.cap.as_dvec4();
-    if cap.truncate() == DVec3::ZERO {
-        return place.direction(away);
+    let extruded = draw.extruded(p);
+    match extruded.w {
+        0.0 => place.direction(extruded.truncate()),
+        w => place.point(extruded.truncate() / w),
     }
-    let rate = cap.truncate().dot(away);
-    place.point(p + away * ((cap.w - cap.truncate().dot(p)) / rate))
 }

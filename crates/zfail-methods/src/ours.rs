@@ -6,7 +6,7 @@
 //!   [`crate::eye_count`] made right, for it asks of the whole rectangle and not of the eye.
 //!
 //! Beside the steps, which can all be left, stand what makes it exact on any mesh: integer weights that close every
-//! volume, planar caps under orthographic views, and batches that are folded before 8 bits wrap. The tile pass and
+//! volume, finite caps under orthographic views, and batches that are folded before 8 bits wrap. The tile pass and
 //! silhouettes found on the device belong to it too, but depend on the device's measured times and are not taken here.
 
 use crate::mcguire;

@@ -8,7 +8,7 @@ use crate::stage::{self, Stage};
 use crate::volumes::{Draw, Volumes};
 use crate::{Error, Figures};
 use std::time::Instant;
-use zfail_plan::glam::{DAffine3, Vec3, Vec4};
+use zfail_plan::glam::{DAffine3, Vec3};
 use zfail_plan::plan::{self, Counting, FramePlan, Measures, ShadowLight};
 use zfail_plan::scene::{Instance, Light};
 use zfail_plan::view::View;
@@ -71,14 +71,14 @@ fn drawn(plan: &FramePlan, casters: &[(usize, &Instance, &Mesh)]) -> Volumes {
     for draw in &plan.draws {
         let Some(&(number, instance, mesh)) = casters.get(draw.caster as usize) else { continue };
         let same =
-            |other: &plan::Draw| other.caster == draw.caster && other.light == draw.light && other.cap == draw.cap;
+            |other: &plan::Draw| other.caster == draw.caster && other.light == draw.light && other.reach == draw.reach;
         let first_vertex = match before {
             Some((other, first)) if same(other) => first,
             _ => {
                 let first = volumes.vertices.len() as i32;
                 volumes.vertices.extend(mesh.topology.positions.iter().flat_map(|&position| {
                     let p = Vec3::from(position);
-                    [p.extend(1.0).to_array(), thrown(p, draw).to_array()]
+                    [p.extend(1.0).to_array(), draw.extruded(p.as_dvec3()).as_vec4().to_array()]
                 }));
                 first
             }
@@ -102,17 +102,6 @@ fn drawn(plan: &FramePlan, casters: &[(usize, &Instance, &Mesh)]) -> Volumes {
         });
     }
     volumes
-}
-
-/// `p` at infinity, or on the plane of the draw's dark cap.
-fn thrown(p: Vec3, draw: &plan::Draw) -> Vec4 {
-    let away = p * draw.light.w - draw.light.truncate();
-    let normal = draw.cap.truncate();
-    if normal == Vec3::ZERO {
-        return away.extend(0.0);
-    }
-    let rate = normal.dot(away);
-    (p * rate + away * (draw.cap.w - normal.dot(p))).extend(rate)
 }
 
 fn is_mirrored(world_from_object: &DAffine3) -> bool {

@@ -35,7 +35,7 @@ use crate::scissor::Rectangle;
 use crate::topology::Topology;
 use crate::view::View;
 use crate::volume::Volume;
-use glam::DAffine3;
+use glam::{DAffine3, DVec3, DVec4};
 use std::ops::Range;
 
 pub use stages::Planner;
@@ -113,6 +113,20 @@ pub struct Draw {
     pub extraction: Option<Extraction>,
     /// Whether the caster's transform mirrors, so that outside is clockwise.
     pub mirrored: bool,
+}
+
+impl Draw {
+    /// Where the vertex at `p`, object space, is extruded to: as the vertex shader does it, without its rounding.
+    #[must_use]
+    pub fn extruded(&self, p: DVec3) -> DVec4 {
+        let light = self.light.as_dvec4();
+        let away = p * light.w - light.truncate();
+        match f64::from(self.reach) {
+            0.0 => away.extend(0.0),
+            reach if light.w == 0.0 => (p + away * reach).extend(1.0),
+            reach => (light.truncate() * away.length() + away * reach).extend(away.length()),
+        }
+    }
 }
 
 /// What one light draws.
