@@ -236,7 +236,7 @@ fn lookup(gpu: &Gpu, uniform: &MapUniform, maps: &TextureView) -> Surfaces {
         min_binding_size: None,
     };
     let texture = wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Depth,
+        sample_type: wgpu::TextureSampleType::Float { filterable: false },
         view_dimension: wgpu::TextureViewDimension::D2Array,
         multisampled: false,
     };
