@@ -1,4 +1,4 @@
-//! The occlusion pyramid: everything between the light and the near rectangle (McGuire et al. 2003, section 5).
+//! The occlusion pyramid: everything between the light and the near rectangle (McGuire et al. 2003, section 6).
 //!
 //! In: the near rectangle, grown to a slab that covers rounding, and the light, both in a caster's object space. Out:
 //! whether a box or an edge keeps clear of their convex hull. Where a whole caster does, no point of the near rectangle
