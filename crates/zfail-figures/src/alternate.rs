@@ -65,13 +65,20 @@ pub fn clipped_scene(model: &Model, region: &Region) -> Vec<([DVec4; 3], [u8; 3]
     scene
 }
 
-/// Points that the image has to show: those of the scene, the eye, and lights that are not too far away.
+/// Points that the image has to show: those of the scene, the eye, and lights that are not too far away or the arrows that
+/// stand for them.
 pub fn worth_seeing<'p>(model: &Model, paper: &Paper<'_>, scene: impl Iterator<Item = &'p DVec4>) -> Vec<DVec3> {
     let mut points: Vec<DVec3> = scene.map(|p| p.truncate() / p.w).collect();
     points.push(model.anchored(paper.view.eye().extend(1.0)).truncate());
     let (center, radius) = paper::ball(&points);
-    let lights = paper.lights.iter().map(|&l| model.anchored(model.lights[l].kind.homogeneous()));
-    points.extend(lights.filter(|l| l.w != 0.0).map(|l| l.truncate()).filter(|l| l.distance(center) < 2.0 * radius));
+    for light in paper.lights.iter().map(|&l| model.anchored(model.lights[l].kind.homogeneous())) {
+        let at = light.truncate();
+        if light.w == 0.0 {
+            points.push(center + at.normalize_or_zero() * radius);
+        } else if at.distance(center) < 2.0 * radius {
+            points.push(at);
+        }
+    }
     points
 }
 
