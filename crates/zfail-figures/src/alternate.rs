@@ -29,14 +29,14 @@ pub fn compose(model: &mut Model, plans: &mut Plans, paper: &Paper<'_>) -> Resul
     let mut polygon = Vec::new();
     for triangle in &whole.triangles {
         region.triangle(triangle.corners, &mut polygon);
-        let (hue, opacity) = over_picture::glass_color(triangle, by_light, paper.lights);
+        let (hue, opacity) = over_picture::glass_color(model, triangle, by_light, paper.lights);
         for corners in fan(&polygon) {
             drawing.glass.extend(flat(corners, with_opacity(hue, 0.6 * opacity), triangle.winding.into()));
         }
     }
     for (light, edge) in &whole.silhouettes {
         if let Some(edge) = region.segment(*edge) {
-            let hue = if by_light { palette::light(paper.lights[*light]) } else { palette::INK };
+            let hue = if by_light { model.hues[paper.lights[*light]] } else { palette::INK };
             drawing.line(edge, paper.line(hue, 0.7));
         }
     }

@@ -4,7 +4,7 @@
 //! that single precision suffices whatever the scene's place. Surfaces and volumes take positions from [`Place`] alone: a
 //! light cap has the very depths of the surface that it lies on.
 
-use crate::Error;
+use crate::{Error, palette};
 use std::collections::HashMap;
 use std::sync::OnceLock;
 use zfail_plan::glam::{DAffine3, DVec3, DVec4};
@@ -19,6 +19,8 @@ pub struct Model {
     pub meshes: Vec<MeshModel>,
     pub instances: Vec<Instance>,
     pub lights: Vec<Light>,
+    /// Of each light in figures.
+    pub hues: Vec<[u8; 3]>,
     /// World space.
     pub anchor: DVec3,
     /// Indices of the instances that cast, and of each instance among these.
@@ -83,6 +85,7 @@ impl Model {
         Ok(Self {
             meshes: (0..scene.meshes.len()).map(|m| MeshModel::new(scene, m)).collect(),
             instances: scene.instances.clone(),
+            hues: hues(&scene.lights),
             lights: scene.lights.clone(),
             anchor: if bounds.is_empty() { DVec3::ZERO } else { bounds.center() },
             casters,
@@ -113,6 +116,12 @@ impl Model {
             light.shape.axes = *axes;
         }
         Ok(())
+    }
+
+    /// Replaces all lights.
+    pub fn set_lights(&mut self, lights: &[Light]) {
+        self.hues = hues(lights);
+        self.lights = lights.to_vec();
     }
 
     /// Makes the topologies of all casters that have none yet.
@@ -234,6 +243,10 @@ impl MeshModel {
             true => Topology::bending(positions, triangles, alike, surface),
         }
     }
+}
+
+fn hues(lights: &[Light]) -> Vec<[u8; 3]> {
+    palette::lights(&lights.iter().map(|light| light.color).collect::<Vec<_>>())
 }
 
 /// Finds indices that lead astray.

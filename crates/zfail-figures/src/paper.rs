@@ -85,7 +85,7 @@ pub fn eye_and_lights(drawing: &mut Drawing, model: &Model, paper: &Paper<'_>, c
         marker(drawing, camera, eye, palette::FRUSTUM, "eye");
     }
     for &light in paper.lights {
-        let hue = palette::light(light);
+        let hue = model.hues[light];
         let at = model.anchored(model.lights[light].kind.homogeneous());
         let name = over_picture::light_name(model, light);
         if at.w != 0.0 {

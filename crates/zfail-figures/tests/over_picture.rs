@@ -112,7 +112,7 @@ fn volumes_by_light_have_the_hues_of_their_lights() {
             };
             changed.iter().filter(|c| way(c) > 0).count() as f64 / changed.len() as f64
         };
-        [towards(palette::light(0)), towards(palette::light(1))]
+        palette::lights(&[[1.0; 3]; 2]).into_iter().map(towards).collect::<Vec<f64>>()
     };
     let (first, second) = (shown(0), shown(1));
     assert!(first[0] > 0.95 && second[1] > 0.95, "{first:?} {second:?}");
