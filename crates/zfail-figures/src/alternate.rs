@@ -68,8 +68,16 @@ pub fn clipped_scene(model: &Model, region: &Region) -> Vec<([DVec4; 3], [u8; 3]
 /// Points that the image has to show: those of the scene, the eye, and lights that are not too far away or the arrows that
 /// stand for them.
 pub fn worth_seeing<'p>(model: &Model, paper: &Paper<'_>, scene: impl Iterator<Item = &'p DVec4>) -> Vec<DVec3> {
+    let eye = model.anchored(paper.view.eye().extend(1.0)).truncate();
     let mut points: Vec<DVec3> = scene.map(|p| p.truncate() / p.w).collect();
-    points.push(model.anchored(paper.view.eye().extend(1.0)).truncate());
+    // The far ends of a plain that everything stands on would make all else small.
+    let mut distances: Vec<f64> = points.iter().map(|p| p.distance(eye)).collect();
+    if !distances.is_empty() {
+        let most = distances.len() * 9 / 10;
+        let (_, &mut usual, _) = distances.select_nth_unstable_by(most, f64::total_cmp);
+        points.retain(|p| p.distance(eye) <= 1.5 * usual);
+    }
+    points.push(eye);
     let (center, radius) = paper::ball(&points);
     for light in paper.lights.iter().map(|&l| model.anchored(model.lights[l].kind.homogeneous())) {
         let at = light.truncate();
