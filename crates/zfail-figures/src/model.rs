@@ -7,9 +7,9 @@
 use crate::{Error, palette};
 use std::collections::HashMap;
 use std::sync::OnceLock;
-use zfail_plan::glam::{DAffine3, DVec3, DVec4};
+use zfail_plan::glam::{DAffine3, DMat4, DVec3, DVec4};
 use zfail_plan::plan::Caster;
-use zfail_plan::scene::{Bounds, Instance, Light, Mesh, Pose, Scene, world_triangle};
+use zfail_plan::scene::{Bounds, Instance, Light, Mesh, Pose, Scene};
 use zfail_plan::topology::{Surface, Topology};
 use zfail_plan::view::View;
 
@@ -176,21 +176,16 @@ impl Model {
         (p.truncate() - self.anchor * p.w).extend(p.w)
     }
 
-    /// Of all vertices, world space.
+    /// A box around all instances, world space.
     pub fn bounds(&self) -> Bounds {
-        let mut bounds = Bounds::EMPTY;
-        for instance in &self.instances {
-            let mesh = &self.meshes[instance.mesh].mesh;
-            for t in 0..mesh.triangles.len() {
-                world_triangle(mesh, &instance.world_from_object, t).into_iter().for_each(|p| bounds.add(p));
-            }
-        }
-        bounds
+        let of_mesh: Vec<Bounds> = self.meshes.iter().map(|model| model.mesh.bounds()).collect();
+        let boxes = self.instances.iter().map(|i| of_mesh[i.mesh].transformed(&i.world_from_object));
+        Bounds::of(boxes.filter(|bounds| !bounds.is_empty()).flat_map(|bounds| [bounds.min, bounds.max]))
     }
 
     /// Anchored to clip space of `view`.
-    pub fn clip_from_anchored(&self, view: &View) -> zfail_plan::glam::DMat4 {
-        view.clip_from_relative() * zfail_plan::glam::DMat4::from_translation(self.anchor - view.eye())
+    pub fn clip_from_anchored(&self, view: &View) -> DMat4 {
+        view.clip_from_relative() * DMat4::from_translation(self.anchor - view.eye())
     }
 }
 
