@@ -18,7 +18,7 @@ pub enum Overlay {
     Stencil,
     /// Scissor rectangles of lights and draws, and how far lights reach.
     Scissors,
-    /// View frustum and occlusion pyramid of one light, from elsewhere (McG section 5, Figure 2).
+    /// View frustum and occlusion pyramid of one light, from elsewhere (McG section 6, Figure 2).
     Pyramid,
     /// Edges of all triangles.
     Wireframe,

@@ -1,4 +1,4 @@
-//! The occlusion pyramid between a light and the near rectangle, beside the view frustum (McG 2003, section 5 and Figure 2):
+//! The occlusion pyramid between a light and the near rectangle, beside the view frustum (McG 2003, section 6 and Figure 2):
 //! casters that keep clear of it are counted by z-pass.
 //!
 //! In: model, the eye's view, a light. Out: a drawing on paper, casters coloured by case.
