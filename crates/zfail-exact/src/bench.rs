@@ -2,7 +2,7 @@
 
 use crate::recipe::Recipe;
 use zfail_oracle::{CastTable, Guards, Oracle, Report, SizeMismatch, Truth};
-use zfail_plan::{closure, scene::Scene, topology::TopologyError, view::View};
+use zfail_plan::{casting, closure, scene::Scene, topology::TopologyError, view::View};
 use zfail_render::{AovKind, Aovs, Gpu, RenderError, Renderer, Settings};
 
 /// A scene that could not be compared.
@@ -99,6 +99,9 @@ pub fn truths(scene: &Scene, view: &View) -> Result<Vec<Truth>, BenchError> {
 pub fn truths_with(scene: &Scene, view: &View, guards: Guards) -> Result<Vec<Truth>, BenchError> {
     let oracle = Oracle::with_guards(scene, guards);
     let topologies = closure::topologies(scene)?;
-    let judge = |(i, light)| oracle.judge(view, light, &CastTable::of_volumes(scene, &topologies, i));
+    let judge = |(l, light)| {
+        let castings = casting::of_scene(scene, &topologies, l);
+        oracle.judge(view, light, &CastTable::from_fn(scene, |i, t| castings[i][t].into()))
+    };
     Ok(scene.lights.iter().enumerate().map(judge).collect())
 }

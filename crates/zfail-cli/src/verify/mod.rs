@@ -20,6 +20,7 @@ use report::{LightReport, Report};
 use std::path::PathBuf;
 use variants::Variant;
 use zfail_oracle::{CastTable, Oracle, Truth};
+use zfail_plan::casting;
 use zfail_plan::closure::{self, Closure};
 use zfail_plan::topology::Topology;
 use zfail_render::{AovKind, Aovs, Gpu, RenderError, Renderer};
@@ -102,7 +103,9 @@ fn draw(renderer: &mut Renderer<'_>, shot: &Shot, variant: &Variant) -> Result<A
 }
 
 fn truth(oracle: &Oracle, shot: &Shot, topologies: &[Option<Topology>], light: usize) -> Truth {
-    oracle.judge(&shot.view, &shot.scene.lights[light], &CastTable::of_volumes(&shot.scene, topologies, light))
+    let castings = casting::of_scene(&shot.scene, topologies, light);
+    let casts = CastTable::from_fn(&shot.scene, |instance, triangle| castings[instance][triangle].into());
+    oracle.judge(&shot.view, &shot.scene.lights[light], &casts)
 }
 
 /// A device of its own for a second opinion.
