@@ -4,10 +4,10 @@ use crate::args::{AlphaShadows, Device, Loading, Moment};
 use crate::error::Error;
 use crate::names;
 use std::path::Path;
-use zfail_plan::scene::{MaskCasting, Scene};
+use zfail_plan::scene::{Camera, MaskCasting, Scene};
 use zfail_render::{Gpu, GpuOptions};
 use zfail_scene::read::Fault;
-use zfail_scene::{Animated, FileInfo, builtin, cut};
+use zfail_scene::{Animated, FileInfo, SavedView, SavedViewError, builtin, cut};
 
 const BUILTIN: &str = "builtin:";
 
@@ -110,6 +110,16 @@ pub fn camera(scene: &Scene, wanted: &str) -> Result<usize, Error> {
     names::index_of("camera", wanted, &names)
 }
 
+/// The camera that is asked for: of the scene, or of a saved view, whose lights and casters `scene` has afterwards.
+///
+/// # Errors
+/// If there is none, or the view is not one of this scene.
+pub fn eye(scene: &mut Scene, wanted: &str, view: Option<&Path>) -> Result<Camera, Error> {
+    let Some(path) = view else { return Ok(scene.cameras[camera(scene, wanted)?].clone()) };
+    let failed = |e: SavedViewError| Error::failed(format!("{}: {}", path.display(), chain(&e)));
+    SavedView::read(path).and_then(|view| view.apply(scene)).map_err(failed)
+}
+
 /// The lights that shine, in ascending order: all of them, or those in `wanted`.
 ///
 /// # Errors
@@ -133,11 +143,16 @@ pub fn lights(scene: &Scene, wanted: &[usize]) -> Result<Vec<usize>, Error> {
 /// # Errors
 /// If there is none.
 pub fn gpu(device: &Device) -> Result<Gpu, Error> {
+    Gpu::new(&gpu_options(device)).map_err(|e| Error::failed(chain(&e)))
+}
+
+/// What `device` asks for.
+pub fn gpu_options(device: &Device) -> GpuOptions {
     let mut options = GpuOptions { adapter: device.adapter.clone(), ..GpuOptions::default() };
     if let Some(backend) = device.backend {
         options.backends = backend.backends();
     }
-    Gpu::new(&options).map_err(|e| Error::failed(chain(&e)))
+    options
 }
 
 /// An error with its causes, each said once.

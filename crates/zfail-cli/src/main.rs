@@ -1,4 +1,4 @@
-//! The program `zfail`: exact stencil shadows of glTF scenes, headless.
+//! The program `zfail`: exact stencil shadows of glTF scenes, headless or in a window.
 //!
 //! In: a command line. Out: files, or text on standard output; notices and errors on standard error. Exit code 0 for
 //! done, 1 for failed, 2 for wrong usage.
@@ -17,6 +17,8 @@ mod names;
 mod numbering;
 mod output;
 mod render;
+#[cfg(feature = "view")]
+mod view;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -43,5 +45,7 @@ fn run(command: &Command) -> Result<(), error::Error> {
         Command::Info(args) => info::run(args),
         Command::Bench(args) => bench::run(args),
         Command::Gallery(args) => gallery::run(args),
+        #[cfg(feature = "view")]
+        Command::View(args) => view::run(args),
     }
 }

@@ -35,10 +35,10 @@ fn still(args: &args::Render) -> Result<(), Error> {
     let destinations = Destinations::new(args, None)?;
     destinations.check(&args.aovs, false)?;
     destinations.folders(&args.aovs).for_each(output::sweep);
-    let scene = input::at_moment(input::complete(&args.scene.scene, &args.scene.loading)?, &args.moment)?;
+    let mut scene = input::at_moment(input::complete(&args.scene.scene, &args.scene.loading)?, &args.moment)?;
     console::notices(&scene.notices, args.verbosity.quiet);
-    let camera = input::camera(&scene, &args.camera)?;
-    let view = scene.cameras[camera].view(args.size.0, &scene.bounds());
+    let camera = input::eye(&mut scene, &args.camera, args.view.as_deref())?;
+    let view = camera.view(args.size.0, &scene.bounds());
     let lights = input::lights(&scene, &args.lights)?;
     let settings = settings(args, &lights);
 
