@@ -8,6 +8,7 @@ pub use view::View;
 
 use crate::names;
 use crate::numbering::Frames;
+use crate::render::OverlayArgs;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use std::ops::RangeInclusive;
@@ -98,6 +99,8 @@ pub struct Render {
     /// Counts and times of this run as JSON.
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
+    #[command(flatten)]
+    pub overlays: OverlayArgs,
     #[command(flatten)]
     pub device: Device,
     #[command(flatten)]
