@@ -208,6 +208,8 @@ fn a_scene_is_looked_at_changed_and_saved() {
     step(&mut window, "a drag of the new light, which is in the middle");
     window.key("m");
     step(&mut window, "4 samples");
+    window.key("alt+3");
+    step(&mut window, "an overlay of silhouettes");
 
     window.display.input("key ctrl+s");
     let saved = window.next_picture();

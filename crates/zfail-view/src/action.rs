@@ -1,5 +1,7 @@
 //! Everything that can be asked for by a key or a button.
 
+use zfail_figures::Overlay;
+
 /// A wish of the user.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
@@ -33,6 +35,8 @@ pub enum Action {
     Expose(f32),
     /// Exposure from the picture.
     AutoExposure,
+    /// An overlay on or off.
+    Overlay(Overlay),
     /// A new light.
     AddLight(Place),
     /// Without the selected light.

@@ -3,6 +3,7 @@
 use crate::ViewError;
 use crate::present::Present;
 use egui_wgpu::{RendererOptions, ScreenDescriptor};
+use std::mem;
 use std::sync::Arc;
 use wgpu::CurrentSurfaceTexture as Acquired;
 use winit::window::Window;
@@ -85,14 +86,16 @@ impl Canvas {
         &mut self,
         gpu: &Gpu,
         context: &egui::Context,
-        output: egui::FullOutput,
+        mut output: egui::FullOutput,
         picture: Option<(&wgpu::Texture, egui::Rect)>,
     ) -> Result<Shown, ViewError> {
-        for (id, deltas) in &output.textures_delta.set {
+        let mut textures = mem::take(&mut output.textures_delta);
+        for (id, deltas) in textures.set.drain() {
             for delta in deltas {
-                self.panels.update_texture(&gpu.device, &gpu.queue, *id, delta);
+                self.panels.update_texture(&gpu.device, &gpu.queue, id, &delta);
             }
         }
+        let unused = mem::take(&mut textures.free);
         let shown = match self.acquire(gpu)? {
             Ok(frame) => {
                 let jobs = context.tessellate(output.shapes, output.pixels_per_point);
@@ -103,7 +106,7 @@ impl Canvas {
             }
             Err(shown) => shown,
         };
-        for id in &output.textures_delta.free {
+        for id in &unused {
             self.panels.free_texture(id);
         }
         Ok(shown)

@@ -29,6 +29,10 @@ pub fn render(session: &Session, size: [u32; 2], view: &Path, picture: &Path, fl
     if settings.terminator == Terminator::Exact {
         option("--terminator", "exact".to_owned());
     }
+    if !session.look.overlays.is_empty() {
+        let names: Vec<&str> = session.look.overlays.iter().map(|overlay| overlay.name()).collect();
+        option("--overlay", names.join(","));
+    }
     words.extend((!settings.shadows).then(|| "--no-shadows".to_owned()));
     words.extend(flags.iter().cloned());
     words.extend(["-o".to_owned(), picture.display().to_string()]);
@@ -49,6 +53,7 @@ fn quoted(word: &str) -> String {
 mod tests {
     use super::*;
     use crate::session::Look;
+    use zfail_figures::Overlay;
     use zfail_scene::builtin;
 
     #[test]
@@ -67,8 +72,10 @@ mod tests {
         session.look.settings.shadows = false;
         session.look.settings.terminator = Terminator::Exact;
         session.playback.seconds = Some(0.1 + 0.2);
+        session.look.toggle(Overlay::Stencil);
+        session.look.toggle(Overlay::Volumes);
         let said = line(&session);
-        for words in ["--exposure -0.1 ", " --no-shadows ", " --terminator exact ", " --time 0.30000000000000004 "] {
+        for words in ["--exposure -0.1 ", " --no-shadows ", " --terminator exact ", " --time 0.30000000000000004 ", " --overlay volumes,stencil "] {
             assert!(said.contains(words), "{words} in {said}");
         }
     }

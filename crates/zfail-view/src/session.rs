@@ -7,6 +7,7 @@ use crate::action::{Action, Place};
 use crate::camera::{Mode, Rig, radius};
 use crate::playback::Playback;
 use std::mem;
+use zfail_figures::Overlay;
 use zfail_plan::glam::DVec3;
 use zfail_plan::scene::{Bounds, Light, LightKind, LightShape, Pose, Scene};
 use zfail_plan::view::View;
@@ -18,6 +19,18 @@ use zfail_scene::Animated;
 pub struct Look {
     /// Technique, samples, exposure and the like. Which lights shine is the scene's business.
     pub settings: Settings,
+    /// What is drawn over the picture, in the order of [`Overlay::ALL`].
+    pub overlays: Vec<Overlay>,
+}
+
+impl Look {
+    /// Draws an overlay, or no longer.
+    pub fn toggle(&mut self, overlay: Overlay) {
+        match self.overlays.binary_search(&overlay) {
+            Ok(at) => drop(self.overlays.remove(at)),
+            Err(at) => self.overlays.insert(at, overlay),
+        }
+    }
 }
 
 /// What of a scene is not yet on the device, or not yet in the picture.
@@ -114,6 +127,12 @@ impl Session {
     /// Names of the animations, and their durations in seconds.
     pub fn animations(&self) -> impl Iterator<Item = (&str, f64)> {
         self.rest.animations.iter().map(|animation| (animation.name.as_str(), animation.duration))
+    }
+
+    /// Where everything is.
+    #[must_use]
+    pub fn pose(&self) -> &Pose {
+        &self.pose
     }
 
     /// Says that the picture has to be drawn again.
@@ -251,6 +270,7 @@ impl Session {
             Action::AutoExposure => settings.exposure = Exposure::Auto,
             Action::AddLight(place) => self.add_light(place),
             Action::RemoveLight => self.remove_light(),
+            Action::Overlay(overlay) => self.look.toggle(overlay),
             Action::NextLight => {
                 let count = self.scene.lights.len();
                 self.selected = (count > 0).then(|| self.selected.map_or(0, |light| (light + 1) % count));

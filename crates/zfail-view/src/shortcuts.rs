@@ -1,7 +1,8 @@
 //! The keys.
 
 use crate::action::{Action, Place};
-use egui::{Key, KeyboardShortcut, Modifiers};
+use egui::{Event, Key, KeyboardShortcut, Modifiers};
+use zfail_figures::Overlay;
 
 /// A key, what it does, and what the list of keys says about it.
 pub struct Shortcut {
@@ -18,6 +19,16 @@ const fn key(modifiers: Modifiers, key: Key, action: Action, says: &'static str)
 pub const ALL: &[Shortcut] = &[
     key(Modifiers::CTRL, Key::Q, Action::Quit, "quit"),
     key(Modifiers::CTRL, Key::S, Action::SaveView, "save picture and view, and the command line that makes it again"),
+    key(Modifiers::ALT, Key::Num1, Action::Overlay(Overlay::ALL[0]), "overlays: volumes; 2 to 0 the others"),
+    key(Modifiers::ALT, Key::Num2, Action::Overlay(Overlay::ALL[1]), ""),
+    key(Modifiers::ALT, Key::Num3, Action::Overlay(Overlay::ALL[2]), ""),
+    key(Modifiers::ALT, Key::Num4, Action::Overlay(Overlay::ALL[3]), ""),
+    key(Modifiers::ALT, Key::Num5, Action::Overlay(Overlay::ALL[4]), ""),
+    key(Modifiers::ALT, Key::Num6, Action::Overlay(Overlay::ALL[5]), ""),
+    key(Modifiers::ALT, Key::Num7, Action::Overlay(Overlay::ALL[6]), ""),
+    key(Modifiers::ALT, Key::Num8, Action::Overlay(Overlay::ALL[7]), ""),
+    key(Modifiers::ALT, Key::Num9, Action::Overlay(Overlay::ALL[8]), ""),
+    key(Modifiers::ALT, Key::Num0, Action::Overlay(Overlay::ALL[9]), ""),
     key(Modifiers::NONE, Key::F12, Action::Screenshot, "save the picture"),
     key(Modifiers::NONE, Key::F1, Action::Help, "this list"),
     key(Modifiers::NONE, Key::H, Action::Panels, "hide or show the panels"),
@@ -60,8 +71,11 @@ pub fn pressed(context: &egui::Context) -> Vec<Action> {
     if context.egui_wants_keyboard_input() {
         return Vec::new();
     }
-    context
-        .input_mut(|input| ALL.iter().filter(|s| input.consume_shortcut(&s.keys)).map(|s| s.action.clone()).collect())
+    context.input_mut(|input| {
+        // A key that is held asks once.
+        input.events.retain(|event| !matches!(event, Event::Key { repeat: true, .. }));
+        ALL.iter().filter(|s| input.consume_shortcut(&s.keys)).map(|s| s.action.clone()).collect()
+    })
 }
 
 #[cfg(test)]

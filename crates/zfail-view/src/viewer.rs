@@ -60,7 +60,7 @@ impl<'g> Viewer<'g> {
             gpu,
             host,
             deliver,
-            look: Look { settings: options.settings },
+            look: Look { settings: options.settings, overlays: Vec::new() },
             flags: options.flags,
             folder: options.folder,
             stage: None,

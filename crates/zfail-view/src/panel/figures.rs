@@ -31,7 +31,7 @@ pub fn figures(ui: &mut Ui, stage: &Stage<'_>, gpu: &wgpu::AdapterInfo) {
             ("vertices", total(|light| light.vertices)),
         ] {
             ui.label(name);
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.monospace(grouped(count)));
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(grouped(count)));
             ui.end_row();
         }
     });

@@ -5,6 +5,7 @@ use crate::camera::Mode;
 use crate::session::Session;
 use crate::stage::Stage;
 use egui::{ComboBox, DragValue, Slider, Ui};
+use zfail_figures::Overlay;
 use zfail_plan::view::Projection;
 use zfail_render::{Exposure, Technique, Terminator};
 
@@ -138,4 +139,21 @@ pub fn picture(ui: &mut Ui, stage: &mut Stage<'_>, actions: &mut Vec<Action>) {
     if *settings != before {
         stage.session.touch();
     }
+}
+
+/// What is drawn over the picture.
+pub fn overlays(ui: &mut Ui, session: &mut Session) {
+    egui::Grid::new("overlays").num_columns(2).spacing([16.0, 3.0]).show(ui, |ui| {
+        for (i, overlay) in Overlay::ALL.into_iter().enumerate() {
+            let mut shown = session.look.overlays.contains(&overlay);
+            let key = (i + 1) % 10;
+            if ui.checkbox(&mut shown, overlay.name()).on_hover_text(format!("{} (Alt+{key})", overlay.description())).changed() {
+                session.look.toggle(overlay);
+                session.touch();
+            }
+            if i % 2 == 1 {
+                ui.end_row();
+            }
+        }
+    });
 }

@@ -96,6 +96,7 @@ pub fn show(
             }
             section(ui, "Lights", true, |ui| lights::lights(ui, desk, &mut stage.session, actions));
             section(ui, "Picture", true, |ui| look::picture(ui, stage, actions));
+            section(ui, "Overlays", false, |ui| look::overlays(ui, &mut stage.session));
             section(ui, "Casters", false, |ui| scene::casters(ui, &mut desk.filter, &mut stage.session));
             section(ui, "Save", false, |ui| save(ui, desk, actions));
             section(ui, "Figures", true, |ui| figures::figures(ui, stage, gpu));
