@@ -201,11 +201,17 @@ fn a_scene_is_looked_at_changed_and_saved() {
     window.key("x");
     step(&mut window, "switching shadows off");
     window.key("x");
-    window.key("shift+l");
-    step(&mut window, "a new light");
     window.key("l");
-    window.drag(1, [160, 100], [120, 60]);
-    step(&mut window, "a drag of the new light, which is in the middle");
+    step(&mut window, "a new light at the eye");
+    window.key("1");
+    step(&mut window, "the new light, as the file's camera sees it,");
+    // There, the red light is here.
+    window.drag(1, [153, 43], [190, 70]);
+    window.key("1");
+    step(&mut window, "a drag of a light's handle, whatever became of the camera,");
+    window.key("n");
+    window.key("Delete");
+    step(&mut window, "removing the first light");
     window.key("m");
     step(&mut window, "4 samples");
     window.key("alt+3");

@@ -75,7 +75,13 @@ mod tests {
         session.look.toggle(Overlay::Stencil);
         session.look.toggle(Overlay::Volumes);
         let said = line(&session);
-        for words in ["--exposure -0.1 ", " --no-shadows ", " --terminator exact ", " --time 0.30000000000000004 ", " --overlay volumes,stencil "] {
+        for words in [
+            "--exposure -0.1 ",
+            " --no-shadows ",
+            " --terminator exact ",
+            " --time 0.30000000000000004 ",
+            " --overlay volumes,stencil ",
+        ] {
             assert!(said.contains(words), "{words} in {said}");
         }
     }

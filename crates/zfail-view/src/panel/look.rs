@@ -147,7 +147,11 @@ pub fn overlays(ui: &mut Ui, session: &mut Session) {
         for (i, overlay) in Overlay::ALL.into_iter().enumerate() {
             let mut shown = session.look.overlays.contains(&overlay);
             let key = (i + 1) % 10;
-            if ui.checkbox(&mut shown, overlay.name()).on_hover_text(format!("{} (Alt+{key})", overlay.description())).changed() {
+            if ui
+                .checkbox(&mut shown, overlay.name())
+                .on_hover_text(format!("{} (Alt+{key})", overlay.description()))
+                .changed()
+            {
                 session.look.toggle(overlay);
                 session.touch();
             }

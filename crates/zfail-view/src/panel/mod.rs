@@ -79,13 +79,8 @@ pub fn show(
     if desk.help {
         help(ui.ctx(), &mut desk.help);
     }
-    if !desk.visible {
-        return;
-    }
-    if !messages.is_empty() || loading.is_some() {
-        egui::Panel::bottom("messages").show(ui, |ui| show_messages(ui, messages, loading));
-    }
-    let Some(stage) = stage else { return };
+    say(ui.ctx(), desk.visible, messages, loading);
+    let Some(stage) = stage.filter(|_| desk.visible) else { return };
     egui::Panel::right("panel").default_size(310.0).size_range(270.0..=520.0).show(ui, |ui| {
         scene::header(ui, desk, stage, recent, actions);
         ui.separator();
@@ -127,38 +122,55 @@ fn save(ui: &mut Ui, desk: &mut Desk, actions: &mut Vec<Action>) {
     });
 }
 
-/// The latest messages, each of which can be sent away.
-fn show_messages(ui: &mut Ui, messages: &mut Vec<Message>, loading: Option<&str>) {
-    if let Some(source) = loading {
-        ui.horizontal(|ui| {
-            ui.spinner();
-            ui.label(format!("loading {source}"));
-        });
+/// The latest messages over the picture, each of which can be sent away; errors only where panels are not wanted.
+fn say(context: &egui::Context, all: bool, messages: &mut Vec<Message>, loading: Option<&str>) {
+    /// So many are shown.
+    const LATEST: usize = 4;
+    let shown = |message: &Message| all || matches!(message, Message::Error(_));
+    let latest: Vec<usize> = (0..messages.len()).filter(|&i| shown(&messages[i])).rev().take(LATEST).collect();
+    if latest.is_empty() && loading.is_none() {
+        return;
     }
-    let mut read = None;
-    let first = messages.len().saturating_sub(4);
-    for (i, message) in messages.iter().enumerate().skip(first) {
-        ui.horizontal(|ui| {
-            if ui.small_button("x").on_hover_text("Dismiss").clicked() {
-                read = Some(i);
+    let area = egui::Area::new(egui::Id::unique("messages")).anchor(egui::Align2::LEFT_BOTTOM, [8.0, -8.0]);
+    area.show(context, |ui| {
+        egui::Frame::popup(ui.style()).multiply_with_opacity(0.92).show(ui, |ui| {
+            ui.set_max_width((context.content_rect().width() - 360.0).max(240.0));
+            if let Some(source) = loading {
+                ui.horizontal(|ui| {
+                    ui.spinner();
+                    ui.label(format!("loading {source}"));
+                });
             }
-            let text = RichText::new(message.text());
-            match message {
-                Message::Error(_) => ui.add(egui::Label::new(text.color(Color32::from_rgb(255, 120, 105))).wrap()),
-                Message::Note(_) => ui.add(egui::Label::new(text.color(Color32::from_rgb(235, 200, 110))).wrap()),
-                Message::Done(_) => ui.add(egui::Label::new(text).wrap()),
-                Message::Command(line) => {
-                    if ui.small_button("Copy").clicked() {
-                        ui.ctx().copy_text(line.clone());
+            let mut read = None;
+            for &i in latest.iter().rev() {
+                ui.horizontal(|ui| {
+                    if ui.small_button("x").on_hover_text("Dismiss").clicked() {
+                        read = Some(i);
                     }
-                    ui.add(egui::Label::new(text.monospace()).wrap())
-                }
-            };
+                    words(ui, &messages[i]);
+                });
+            }
+            if let Some(i) = read {
+                messages.remove(i);
+            }
         });
-    }
-    if let Some(i) = read {
-        messages.remove(i);
-    }
+    });
+}
+
+fn words(ui: &mut Ui, message: &Message) {
+    let text = RichText::new(message.text());
+    let text = match message {
+        Message::Error(_) => text.color(Color32::from_rgb(255, 120, 105)),
+        Message::Note(_) => text.color(Color32::from_rgb(235, 200, 110)),
+        Message::Done(_) => text,
+        Message::Command(line) => {
+            if ui.small_button("Copy").clicked() {
+                ui.ctx().copy_text(line.clone());
+            }
+            text.monospace()
+        }
+    };
+    ui.add(egui::Label::new(text).wrap());
 }
 
 /// The list of keys.
