@@ -32,6 +32,8 @@ pub fn picture(ui: &mut Ui, session: &mut Session, hand: &mut Hand, handles: boo
     session.aspect = f64::from(area.aspect_ratio()).clamp(0.01, 100.0);
     // Points are precise enough for what a hand does.
     let view = session.view([area.width(), area.height()].map(|side| (side as u32).max(1)));
+    // Pictures from elsewhere have lights elsewhere.
+    let handles = handles && !session.look.overlays.iter().any(|overlay| overlay.replaces_picture());
     let found = if handles { gizmo::handles(&session.scene.lights, session.bounds(), &view) } else { Vec::new() };
     let near = |pointer: Pos2| {
         let distance = |handle: &Handle| place(area, handle.at).distance(pointer);
