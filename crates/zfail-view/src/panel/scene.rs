@@ -85,7 +85,7 @@ pub fn welcome(ui: &mut Ui, recent: &Recent, loading: Option<&str>, actions: &mu
             ui.add_space((0.5 * (width - 620.0)).max(8.0));
             egui::Grid::new("built-in scenes").num_columns(2).spacing([14.0, 5.0]).show(ui, |ui| {
                 for entry in builtin::SCENES {
-                    if ui.link(RichText::new(entry.name).strong()).clicked() {
+                    if ui.link(entry.name).clicked() {
                         actions.push(Action::Open(format!("builtin:{}", entry.name)));
                     }
                     ui.label(entry.description);
