@@ -57,13 +57,16 @@ pub struct Options {
 /// Loads a scene, named as in [`Options::scene`]; it has a camera. Errors are one line.
 pub type Load = Arc<dyn Fn(&str) -> Result<Animated, String> + Send + Sync>;
 
+/// Makes a PNG file of RGBA pixels, rows from top to bottom; width and height come first. Errors are one line.
+pub type Encode = fn([u32; 2], &[u8]) -> Result<Vec<u8>, String>;
+
 /// What the viewer leaves to the program around it.
 #[derive(Clone)]
 pub struct Host {
     /// Loads scenes, on a thread of its own.
     pub load: Load,
-    /// Makes a PNG file of RGBA pixels, rows from top to bottom; width and height come first.
-    pub encode: fn([u32; 2], &[u8]) -> Result<Vec<u8>, String>,
+    /// Makes a picture's file.
+    pub encode: Encode,
     /// Says on the terminal what the window says.
     pub say: fn(&Message),
 }
