@@ -84,7 +84,7 @@ impl<'g> Stage<'g> {
         self.renderer.shown().filter(|_| self.last.is_some())
     }
 
-    /// The picture at `size` pixels: RGBA, rows from top to bottom.
+    /// The picture at `size` pixels, as every run of `zfail render --view` makes it: RGBA, rows from top to bottom.
     ///
     /// # Errors
     /// As [`Self::draw`].
@@ -93,7 +93,7 @@ impl<'g> Stage<'g> {
         self.session.touch();
         self.upload()?;
         let view = self.session.view(size);
-        let picture = self.renderer.picture(&view, &self.session.look.settings)?.0;
+        let picture = self.renderer.picture(&view, &self.session.look.settings.clone().repeatable())?.0;
         self.annotate(&view)?;
         match self.renderer.shown().filter(|_| !self.session.look.overlays.is_empty()) {
             Some(annotated) => Ok(self.gpu.read_texture(annotated)?),

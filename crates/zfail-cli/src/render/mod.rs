@@ -66,7 +66,7 @@ fn still(args: &args::Render) -> Result<(), Error> {
 }
 
 fn settings(args: &args::Render, lights: &[usize]) -> Settings {
-    Settings {
+    let settings = Settings {
         technique: args.technique,
         samples: args.samples,
         shadows: !args.no_shadows,
@@ -74,7 +74,9 @@ fn settings(args: &args::Render, lights: &[usize]) -> Settings {
         exposure: args.exposure,
         terminator: args.terminator,
         ..Settings::default()
-    }
+    };
+    // The viewer has shown what is to come.
+    if args.view.is_some() { settings.repeatable() } else { settings }
 }
 
 /// What the renderer says, as the program says it.
