@@ -20,14 +20,17 @@ Commands:
   fuzz SECONDS [TARGET...]
          Fuzz the loaders, each target for so long; needs a C++ compiler
 
-The first two install a software Vulkan driver first if the machine has no graphics adapter, and test a browser if it has
-none (Debian and Ubuntu, as root).";
+The first two install a software Vulkan driver first if the machine has no graphics adapter; 'test' also a virtual display
+and a browser, for the tests of the viewer and of pages (Debian and Ubuntu, as root).";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();
     let result = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["demo"] => setup::graphics_adapter().and_then(|()| demo()),
-        ["test"] => setup::graphics_adapter().and_then(|()| browser::browser()).and_then(|()| checks::run()),
+        ["test"] => setup::graphics_adapter()
+            .and_then(|()| setup::virtual_display())
+            .and_then(|()| browser::browser())
+            .and_then(|()| checks::run()),
         ["fuzz", seconds, ref targets @ ..] => fuzz::run(seconds, targets),
         ["help" | "-h" | "--help"] => {
             println!("{USAGE}");

@@ -1,4 +1,5 @@
-//! A graphics adapter for machines that have none: Mesa's software Vulkan.
+//! What machines may lack: a graphics adapter, for which Mesa's software Vulkan is installed; and a display with keyboard
+//! and mouse, for which a virtual one is.
 //!
 //! A C linker is not set up here, because without one cargo could not have built this program.
 
@@ -33,6 +34,55 @@ pub fn graphics_adapter() -> Result<(), String> {
     if has_adapter() { Ok(()) } else { Err(format!("{PACKAGE} is installed, but no Vulkan driver was found")) }
 }
 
+/// A virtual display, a program that types and clicks, and the libraries that a window on X11 loads when it opens.
+const DISPLAY_PACKAGES: [&str; 8] =
+    ["xvfb", "xdotool", "libx11-6", "libx11-xcb1", "libxcursor1", "libxi6", "libxkbcommon0", "libxkbcommon-x11-0"];
+
+/// Makes sure that the viewer can be tested: its window opens on a virtual display.
+///
+/// # Errors
+/// If something for that is missing and cannot be installed; the message names the one command that does.
+pub fn virtual_display() -> Result<(), String> {
+    if !cfg!(target_os = "linux") || has_display_packages() {
+        return Ok(());
+    }
+    let packages = DISPLAY_PACKAGES.join(" ");
+    if !Path::new("/etc/debian_version").exists() {
+        return Err(format!(
+            "the viewer's test needs Xvfb, xdotool and X11's client libraries; install what your package manager has for \
+             Debian's '{packages}'"
+        ));
+    }
+    if !is_root() {
+        return Err(format!(
+            "the viewer's test needs a virtual display; run 'sudo apt-get install {packages}' and try again"
+        ));
+    }
+    println!("Installing a virtual display for the viewer's test");
+    apt_get(&["update"])?;
+    apt_get(&[&["install", "--yes", "--no-install-recommends"], &DISPLAY_PACKAGES[..]].concat())?;
+    if has_display_packages() {
+        Ok(())
+    } else {
+        Err(format!("not all of {packages} are there after their installation"))
+    }
+}
+
+fn has_display_packages() -> bool {
+    let programs = ["Xvfb", "xdotool"];
+    let is_program =
+        |name: &&str| env::var_os("PATH").iter().flat_map(env::split_paths).any(|folder| folder.join(name).exists());
+    let libraries = [
+        "libX11.so.6",
+        "libX11-xcb.so.1",
+        "libXcursor.so.1",
+        "libXi.so.6",
+        "libxkbcommon.so.0",
+        "libxkbcommon-x11.so.0",
+    ];
+    programs.iter().all(is_program) && libraries.into_iter().all(has_library)
+}
+
 /// Whether Vulkan is usable here, judged by files alone: the loader is there, and a driver with something to drive.
 fn has_adapter() -> bool {
     if ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"].iter().any(|name| env::var_os(name).is_some()) {
@@ -41,7 +91,7 @@ fn has_adapter() -> bool {
     let drivers = drivers(&data_folders());
     // Distributions ship drivers for hardware that the machine may not have; the software one always works.
     let usable = drivers.iter().any(|name| name.starts_with("lvp_")) || (!drivers.is_empty() && has_gpu());
-    usable && has_loader()
+    usable && has_library("libvulkan.so.1")
 }
 
 /// Where the Vulkan loader looks for `vulkan/icd.d`.
@@ -71,14 +121,14 @@ fn has_gpu() -> bool {
         || ["/dev/nvidia0", "/dev/dxg"].iter().any(|device| Path::new(device).exists())
 }
 
-/// Whether the dynamic linker will find `libvulkan.so.1`.
-fn has_loader() -> bool {
-    let is_loader = |folder: &Path| folder.join("libvulkan.so.1").exists();
+/// Whether the dynamic linker will find the library of this name.
+fn has_library(name: &str) -> bool {
+    let is_there = |folder: &Path| folder.join(name).exists();
     let subfolders = |folder: &str| fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
     ["/usr/lib", "/usr/lib64", "/usr/local/lib", "/lib"]
         .iter()
-        .any(|folder| is_loader(Path::new(folder)) || subfolders(folder).any(|folder| is_loader(&folder)))
-        || env::var_os("LD_LIBRARY_PATH").iter().flat_map(env::split_paths).any(|folder| is_loader(&folder))
+        .any(|folder| is_there(Path::new(folder)) || subfolders(folder).any(|folder| is_there(&folder)))
+        || env::var_os("LD_LIBRARY_PATH").iter().flat_map(env::split_paths).any(|folder| is_there(&folder))
 }
 
 /// Whether packages can be installed.

@@ -1,5 +1,11 @@
 //! The command line: what may be asked, with its help text and the checks that need no scene.
 
+#[cfg(feature = "view")]
+mod view;
+
+#[cfg(feature = "view")]
+pub use view::View;
+
 use crate::names;
 use crate::numbering::Frames;
 use crate::render::OverlayArgs;
@@ -46,6 +52,9 @@ pub enum Command {
     Adapters(adapters::Args),
     /// Write the built-in scenes as .glb files with their pictures.
     Gallery(Gallery),
+    /// Look at a scene in a window: move eye and lights, play animations, save what you see.
+    #[cfg(feature = "view")]
+    View(View),
 }
 
 /// `zfail render`
@@ -63,6 +72,9 @@ pub struct Render {
     /// Camera by index or name, in depth-first order of the scene's nodes.
     #[arg(long, value_name = "N|NAME", default_value = "0")]
     pub camera: String,
+    /// Take camera, lights and casters from a view that was saved in 'zfail view'.
+    #[arg(long, value_name = "FILE.json", conflicts_with_all = ["camera", "frames"])]
+    pub view: Option<PathBuf>,
     #[command(flatten)]
     pub moment: Moment,
     #[command(flatten)]

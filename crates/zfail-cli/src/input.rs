@@ -5,11 +5,11 @@ use crate::console;
 use crate::error::Error;
 use crate::names;
 use std::path::Path;
-use zfail_plan::scene::{MaskCasting, Scene};
+use zfail_plan::scene::{Camera, MaskCasting, Scene};
 use zfail_plan::view::View;
 use zfail_render::{Gpu, GpuOptions};
 use zfail_scene::read::Fault;
-use zfail_scene::{Animated, FileInfo, builtin, cut};
+use zfail_scene::{Animated, FileInfo, SavedView, SavedViewError, builtin, cut};
 
 const BUILTIN: &str = "builtin:";
 
@@ -136,6 +136,16 @@ pub fn builtin_names() -> Vec<&'static str> {
 pub fn camera(scene: &Scene, wanted: &str) -> Result<usize, Error> {
     let names: Vec<&str> = scene.cameras.iter().map(|camera| camera.name.as_str()).collect();
     names::index_of("camera", wanted, &names)
+}
+
+/// The camera that is asked for: of the scene, or of a saved view, whose lights and casters `scene` has afterwards.
+///
+/// # Errors
+/// If there is none, or the view is not one of this scene.
+pub fn eye(scene: &mut Scene, wanted: &str, view: Option<&Path>) -> Result<Camera, Error> {
+    let Some(path) = view else { return Ok(scene.cameras[camera(scene, wanted)?].clone()) };
+    let failed = |e: SavedViewError| Error::failed(format!("{}: {}", path.display(), chain(&e)));
+    SavedView::read(path).and_then(|view| view.apply(scene)).map_err(failed)
 }
 
 /// The lights that shine, in ascending order: all of them, or those in `wanted`.

@@ -1,4 +1,4 @@
-//! The program `zfail`: exact stencil shadows of glTF scenes, headless.
+//! The program `zfail`: exact stencil shadows of glTF scenes, headless or in a window.
 //!
 //! In: a command line. Out: files, or text on standard output; notices and errors on standard error. Exit code 0 for
 //! done, 1 for failed, 2 for wrong usage.
@@ -22,6 +22,8 @@ mod numbering;
 mod output;
 mod render;
 mod verify;
+#[cfg(feature = "view")]
+mod view;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -51,5 +53,7 @@ fn run(command: &Command) -> Result<(), error::Error> {
         Command::Compare(args) => compare::run(args),
         Command::Adapters(args) => adapters::run(args),
         Command::Gallery(args) => gallery::run(args),
+        #[cfg(feature = "view")]
+        Command::View(args) => view::run(args),
     }
 }

@@ -50,6 +50,12 @@ pub fn scene(scene: &Scene) -> Result<(), RenderError> {
             return fail(format!("instance {i} has a transform that is not finite"));
         }
     }
+    lights(scene)
+}
+
+/// Checks the lights of `scene`.
+pub fn lights(scene: &Scene) -> Result<(), RenderError> {
+    let fail = |message: String| Err(RenderError::Scene(message));
     for (i, light) in scene.lights.iter().enumerate() {
         if let Some(e) = light.excluded.iter().find(|&&e| e >= scene.instances.len()) {
             return fail(format!("light {i} excludes instance {e}, which does not exist"));

@@ -48,6 +48,12 @@ impl FrameData {
         Self { bind_group, instances, uniform, lights, lists, shapes, records: Vec::new(), listed: Vec::new() }
     }
 
+    /// Reads the shapes of lights from another buffer.
+    pub fn set_shapes(&mut self, gpu: &Gpu, layouts: &Layouts, shapes: &wgpu::Buffer) {
+        self.shapes = shapes.clone();
+        self.bind_group = group(gpu, layouts, [&self.uniform, &self.lights, &self.lists, &self.shapes]);
+    }
+
     /// Uploads view, lights and, in their order, instances.
     pub fn update<'i>(
         &mut self,

@@ -94,6 +94,26 @@ impl<'g> Renderer<'g> {
         self.scene.pose(self.gpu, pose)
     }
 
+    /// Takes the lights of `scene`, which otherwise is the one that was uploaded: any number of them, with whatever colour,
+    /// place, shape and excluded casters. Meshes and textures stay on the device.
+    ///
+    /// # Errors
+    /// If it is another scene, or a light refers to what is not there. The old lights stay then.
+    pub fn set_lights(&mut self, scene: &Scene) -> Result<(), RenderError> {
+        if self.scene.set_lights(self.gpu, scene)? {
+            self.frame.set_shapes(self.gpu, &self.layouts, &self.scene.shapes.buffer);
+        }
+        Ok(())
+    }
+
+    /// Takes from `scene`, which otherwise is the one that was uploaded, in its present pose, which instances cast shadows.
+    ///
+    /// # Errors
+    /// If it is another scene, or the device runs out of memory.
+    pub fn set_casting(&mut self, scene: &Scene) -> Result<(), RenderError> {
+        self.scene.set_casting(self.gpu, scene)
+    }
+
     /// Renders one picture and reads it back.
     ///
     /// # Errors

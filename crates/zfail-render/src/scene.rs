@@ -60,23 +60,8 @@ impl SceneOnGpu {
                 continue;
             }
             meshes.push(Some(MeshBuffers::new(gpu, mesh)?));
-            let casts = |t| scene.triangle_casts(m, t);
-            let casting =
-                scene.instances.iter().any(|i| i.mesh == m && i.casts_shadow) && (0..mesh.triangles.len()).any(casts);
-            ids.push(if casting {
-                let topology = Topology::of(scene, m).map_err(zfail::Error::from)?;
-                Some(shadows.add_topology(&gpu.device, &gpu.queue, topology)?)
-            } else {
-                None
-            });
-        }
-        let mut casters = Vec::new();
-        let mut caster_of = Vec::with_capacity(scene.instances.len());
-        for instance in &scene.instances {
-            caster_of.push(ids[instance.mesh].filter(|_| instance.casts_shadow).map(|mesh| {
-                casters.push(Caster { mesh, world_from_object: instance.world_from_object });
-                casters.len() - 1
-            }));
+            let casting = scene.instances.iter().any(|i| i.mesh == m && i.casts_shadow);
+            ids.push(if casting { register(gpu, &mut shadows, scene, m)? } else { None });
         }
         let emission = scene
             .materials
@@ -99,12 +84,13 @@ impl SceneOnGpu {
             emission,
             roughness: scene.materials.iter().map(least_roughness).fold(1.0, f64::min),
             shadows,
-            casters,
+            casters: Vec::new(),
             caster_meshes: ids,
             posed: false,
             bending: scene.meshes.iter().map(|mesh| mesh.bends().then_some(mesh.positions.len())).collect(),
-            caster_of,
+            caster_of: Vec::new(),
         };
+        on_gpu.list_casters();
         on_gpu.bound();
         gpu.check()?;
         Ok(on_gpu)
@@ -140,6 +126,53 @@ impl SceneOnGpu {
         }
         self.bound();
         Ok(())
+    }
+
+    /// Takes all lights from `scene`; whether their shapes are in another buffer now.
+    pub fn set_lights(&mut self, gpu: &Gpu, scene: &Scene) -> Result<bool, RenderError> {
+        self.check_instances(scene)?;
+        check::lights(scene)?;
+        let rebuilt = !self.shapes.hold(&scene.lights);
+        if rebuilt {
+            self.shapes = Shapes::new(gpu, scene)?;
+        }
+        self.lights.clone_from(&scene.lights);
+        Ok(rebuilt)
+    }
+
+    /// Takes from `scene` which instances cast shadows.
+    pub fn set_casting(&mut self, gpu: &Gpu, scene: &Scene) -> Result<(), RenderError> {
+        self.check_instances(scene)?;
+        for instance in scene.instances.iter().filter(|instance| instance.casts_shadow) {
+            let m = instance.mesh;
+            if self.meshes[m].is_some() && self.caster_meshes[m].is_none() {
+                self.caster_meshes[m] = register(gpu, &mut self.shadows, scene, m)?;
+            }
+        }
+        for (instance, from) in self.instances.iter_mut().zip(&scene.instances) {
+            instance.casts_shadow = from.casts_shadow;
+        }
+        self.list_casters();
+        Ok(())
+    }
+
+    fn check_instances(&self, scene: &Scene) -> Result<(), RenderError> {
+        let same = self.instances.len() == scene.instances.len()
+            && self.meshes.len() == scene.meshes.len()
+            && self.instances.iter().zip(&scene.instances).all(|(a, b)| a.mesh == b.mesh);
+        if same { Ok(()) } else { Err(RenderError::Scene("this is not the scene that was uploaded".to_owned())) }
+    }
+
+    /// Lists the instances that cast.
+    fn list_casters(&mut self) {
+        self.casters.clear();
+        self.caster_of.clear();
+        for instance in &self.instances {
+            self.caster_of.push(self.caster_meshes[instance.mesh].filter(|_| instance.casts_shadow).map(|mesh| {
+                self.casters.push(Caster { mesh, world_from_object: instance.world_from_object });
+                self.casters.len() - 1
+            }));
+        }
     }
 
     /// Derives all bounds in world space.
@@ -209,6 +242,15 @@ impl SceneOnGpu {
         self.shadows.prepare_tiles(&gpu.device, &gpu.queue)?;
         Ok(())
     }
+}
+
+/// Registers mesh `m` as one that casts; `None` if all its triangles let light through.
+fn register(gpu: &Gpu, shadows: &mut Shadows, scene: &Scene, m: usize) -> Result<Option<MeshId>, RenderError> {
+    if !(0..scene.meshes[m].triangles.len()).any(|t| scene.triangle_casts(m, t)) {
+        return Ok(None);
+    }
+    let topology = Topology::of(scene, m).map_err(zfail::Error::from)?;
+    Ok(Some(shadows.add_topology(&gpu.device, &gpu.queue, topology)?))
 }
 
 fn index_buffer(gpu: &Gpu, size: u64) -> wgpu::Buffer {

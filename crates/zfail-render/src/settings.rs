@@ -39,6 +39,13 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// These settings without any choice that goes by measured times: on one device, every run gives the same picture to
+    /// the bit. Methods between which times decide may differ in pixels whose centre lies on a silhouette, within rounding.
+    #[must_use]
+    pub fn repeatable(self) -> Self {
+        Self { tiles: Tiles::Never, silhouettes: Silhouettes::Cpu, ..self }
+    }
+
     /// The steps that the technique takes under these settings.
     pub(crate) fn measures(&self) -> Measures {
         let measures = self.technique.measures();

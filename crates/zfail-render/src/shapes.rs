@@ -4,7 +4,7 @@ use crate::mip_maps::Level;
 use crate::{Gpu, RenderError, srgb};
 use std::collections::HashMap;
 use zfail_plan::glam::DVec3;
-use zfail_plan::scene::{Filter, LightShape, Scene};
+use zfail_plan::scene::{Filter, Light, LightShape, Scene};
 
 /// Cookies are kept at no more texels a side: a projected picture is seen enlarged.
 const COOKIE_SIDE: u32 = 1024;
@@ -15,6 +15,8 @@ pub struct Shapes {
     pub buffer: wgpu::Buffer,
     /// Where each light's shape begins, in words; 0 for plain lights.
     pub of_light: Vec<u32>,
+    /// The shapes in the buffer that are not plain.
+    packed: Vec<(LightShape, u32)>,
 }
 
 impl Shapes {
@@ -32,7 +34,24 @@ impl Shapes {
             mapped_at_creation: false,
         });
         gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&words));
-        Ok(Self { buffer, of_light })
+        let packed = scene.lights.iter().map(|light| light.shape.clone()).zip(of_light.iter().copied());
+        let packed = packed.filter(|(shape, _)| !shape.is_plain()).collect();
+        Ok(Self { buffer, of_light, packed })
+    }
+
+    /// Takes other lights if the buffer holds all their shapes already; returns whether it does.
+    pub fn hold(&mut self, lights: &[Light]) -> bool {
+        let same = |a: &LightShape, b: &LightShape| {
+            (&a.falloff, a.cookie, a.half_extents) == (&b.falloff, b.cookie, b.half_extents)
+        };
+        let place = |light: &Light| match light.shape.is_plain() {
+            true => Some(0),
+            false => self.packed.iter().find(|(shape, _)| same(shape, &light.shape)).map(|(_, first)| *first),
+        };
+        let places: Option<Vec<u32>> = lights.iter().map(place).collect();
+        let held = places.is_some();
+        self.of_light = places.unwrap_or(std::mem::take(&mut self.of_light));
+        held
     }
 }
 

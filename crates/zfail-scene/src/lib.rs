@@ -2,7 +2,7 @@
 //!
 //! In: a `.glb` or `.gltf` file. Out: a [`zfail_plan::scene::Scene`] and the notices about what was repaired or left
 //! out; with [`load_animated`] also its animations, as poses at any time. [`complete`] adds the light and the camera
-//! that a file may lack, and [`cut`] makes geometry of masked surfaces.
+//! that a file may lack, [`cut`] makes geometry of masked surfaces, and a [`SavedView`] sets a scene up as a user left it.
 
 mod animate;
 pub mod builtin;
@@ -11,6 +11,7 @@ pub mod cut;
 mod deform;
 mod placement;
 pub mod read;
+mod saved_view;
 pub mod write;
 
 pub use animate::{Animated, Animation};
@@ -18,3 +19,4 @@ pub use complete::complete;
 pub use read::{
     FileInfo, Limits, LoadError, Treatment, extension_treatment, load, load_animated, load_variant, load_with,
 };
+pub use saved_view::{SavedView, SavedViewError};

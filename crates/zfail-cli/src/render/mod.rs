@@ -39,10 +39,10 @@ fn still(args: &args::Render) -> Result<(), Error> {
     let destinations = Destinations::new(args, None)?;
     destinations.check(&args.aovs, false)?;
     destinations.folders(&args.aovs).for_each(output::sweep);
-    let scene = input::at_moment(input::complete(&args.scene.scene, &args.scene.loading)?, &args.moment)?;
+    let mut scene = input::at_moment(input::complete(&args.scene.scene, &args.scene.loading)?, &args.moment)?;
     console::notices(&scene.notices, args.verbosity.quiet);
-    let camera = input::camera(&scene, &args.camera)?;
-    let view = scene.cameras[camera].view(args.size.0, &scene.bounds());
+    let camera = input::eye(&mut scene, &args.camera, args.view.as_deref())?;
+    let view = camera.view(args.size.0, &scene.bounds());
     let lights = input::lights(&scene, &args.lights)?;
     let settings = settings(args, &lights);
 
@@ -66,7 +66,7 @@ fn still(args: &args::Render) -> Result<(), Error> {
 }
 
 fn settings(args: &args::Render, lights: &[usize]) -> Settings {
-    Settings {
+    let settings = Settings {
         technique: args.technique,
         samples: args.samples,
         shadows: !args.no_shadows,
@@ -74,7 +74,9 @@ fn settings(args: &args::Render, lights: &[usize]) -> Settings {
         exposure: args.exposure,
         terminator: args.terminator,
         ..Settings::default()
-    }
+    };
+    // The viewer has shown what is to come.
+    if args.view.is_some() { settings.repeatable() } else { settings }
 }
 
 /// What the renderer says, as the program says it.
