@@ -57,7 +57,7 @@ impl JudgedLight {
 /// Why a comparison without mismatch would mean little; `None` if it means much.
 fn proves_little(report: &zfail_oracle::Report) -> Option<String> {
     if let Err(over) = report.budget() {
-        return Some(over.to_string());
+        return Some(format!("{over}; a larger --size leaves out fewer"));
     }
     let few = |share: usize| (share as f64) < 0.001 * report.checked.max(1) as f64;
     match (few(report.lit), few(report.shadowed)) {
