@@ -1,8 +1,10 @@
-//! Set-up, demo and tests: `cargo xtask demo` and `cargo xtask test`; and fuzzing, `cargo xtask fuzz`.
+//! Set-up, demo and tests: `cargo xtask demo` and `cargo xtask test`; fuzzing, `cargo xtask fuzz`; the guide's figures,
+//! `cargo xtask figures`.
 //!
 //! Only the standard library is used, so that the first of these commands on a new machine starts within seconds.
 
 mod checks;
+mod figures;
 mod fuzz;
 mod setup;
 
@@ -18,6 +20,8 @@ Commands:
   test   Run every check: format, lints, documentation, tests, benches in test mode
   fuzz SECONDS [TARGET...]
          Fuzz the loaders, each target for so long; needs a C++ compiler
+  figures [NAME]
+         Make the figures and the table of docs/guide anew, or those with NAME in their names
 
 The first two install a software Vulkan driver first if the machine has no graphics adapter (Debian and Ubuntu, as root).";
 
@@ -27,6 +31,8 @@ fn main() -> ExitCode {
         ["demo"] => setup::graphics_adapter().and_then(|()| demo()),
         ["test"] => setup::graphics_adapter().and_then(|()| checks::run()),
         ["fuzz", seconds, ref targets @ ..] => fuzz::run(seconds, targets),
+        ["figures"] => figures::run(None),
+        ["figures", name] => figures::run(Some(name)),
         ["help" | "-h" | "--help"] => {
             println!("{USAGE}");
             Ok(())
