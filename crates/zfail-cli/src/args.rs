@@ -2,6 +2,7 @@
 
 use crate::names;
 use crate::numbering::Frames;
+use crate::{adapters, compare, verify};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use std::ops::RangeInclusive;
@@ -35,6 +36,12 @@ pub enum Command {
     Info(Info),
     /// Measure what frames cost, by technique, with shadows and without.
     Bench(Bench),
+    /// Check the picture against a ray-cast oracle, on this machine's adapter and driver.
+    Verify(verify::Args),
+    /// Show every method of shadows on one scene side by side: pictures, a page, and a table of wrong pixels.
+    Compare(compare::Args),
+    /// List the graphics adapters, in the order in which they are tried.
+    Adapters(adapters::Args),
     /// Write the built-in scenes as .glb files with their pictures.
     Gallery(Gallery),
 }
@@ -164,6 +171,24 @@ pub struct SceneArg {
     pub scene: String,
     #[command(flatten)]
     pub loading: Loading,
+}
+
+/// One picture of a scene, for commands that judge it.
+#[derive(Args, Clone, Debug)]
+pub struct Subject {
+    #[command(flatten)]
+    pub scene: SceneArg,
+    /// Size of the picture in pixels.
+    #[arg(long, value_name = "WxH", default_value = "640x360", value_parser = Size::parse)]
+    pub size: Size,
+    /// Camera by index or name, in depth-first order of the scene's nodes.
+    #[arg(long, value_name = "N|NAME", default_value = "0")]
+    pub camera: String,
+    #[command(flatten)]
+    pub moment: Moment,
+    /// Let only this light shine; repeat it for several.
+    #[arg(long = "light", value_name = "N", value_parser = parse_light)]
+    pub lights: Vec<usize>,
 }
 
 /// The moment of an animation.

@@ -5,6 +5,7 @@ use crate::error::Error;
 use crate::names;
 use clap::error::{ContextKind, ErrorKind};
 use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
+use serde::Serialize;
 use std::collections::HashSet;
 use std::io::{self, Write};
 use std::panic;
@@ -22,6 +23,16 @@ pub fn print(text: &str) -> Result<(), Error> {
         }
         _ => Ok(()),
     }
+}
+
+/// A report for machines, as [`print`] wants it.
+///
+/// # Errors
+/// If the report cannot be encoded, which is a bug.
+pub fn json(report: &impl Serialize) -> Result<String, Error> {
+    let json =
+        serde_json::to_string_pretty(report).map_err(|e| Error::failed(format!("cannot encode the report: {e}")))?;
+    Ok(json + "\n")
 }
 
 /// Prints each distinct notice of a scene once, unless `quiet`.

@@ -1,5 +1,6 @@
 //! The gallery's page: every scene with its description and pictures, as one HTML file without dependencies.
 
+use crate::html::escape;
 use std::fmt::Write;
 use zfail_plan::scene::Scene;
 
@@ -39,10 +40,6 @@ impl ContactSheet {
              <style>\n{STYLE}\n</style>\n<h1>zfail: built-in scenes</h1>\n{body}</html>\n"
         )
     }
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 #[cfg(test)]

@@ -20,11 +20,5 @@ use report::Report;
 pub fn run(args: &args::Info) -> Result<(), Error> {
     let (animated, file) = input::read(&args.scene.scene, &args.scene.loading)?;
     let report = Report::new(&animated, file)?;
-    if args.json {
-        let json = serde_json::to_string_pretty(&report)
-            .map_err(|e| Error::failed(format!("cannot encode the report: {e}")))?;
-        console::print(&format!("{json}\n"))
-    } else {
-        console::print(&text::text(&report))
-    }
+    if args.json { console::print(&console::json(&report)?) } else { console::print(&text::text(&report)) }
 }

@@ -1,10 +1,12 @@
 //! The scene that a command works on, and the camera, lights and GPU that it asks for.
 
-use crate::args::{AlphaShadows, Device, Loading, Moment};
+use crate::args::{AlphaShadows, Device, Loading, Moment, Subject};
+use crate::console;
 use crate::error::Error;
 use crate::names;
 use std::path::Path;
 use zfail_plan::scene::{MaskCasting, Scene};
+use zfail_plan::view::View;
 use zfail_render::{Gpu, GpuOptions};
 use zfail_scene::read::Fault;
 use zfail_scene::{Animated, FileInfo, builtin, cut};
@@ -86,6 +88,32 @@ pub fn at_moment(animated: Animated, moment: &Moment) -> Result<Scene, Error> {
     Ok(scene)
 }
 
+/// What is seen in one picture.
+pub struct Shot {
+    /// At its moment.
+    pub scene: Scene,
+    /// Name of the camera.
+    pub camera: String,
+    /// The camera.
+    pub view: View,
+    /// Which lights shine, ascending.
+    pub lights: Vec<usize>,
+}
+
+/// Loads the scene of a picture that is to be judged, and says its notices.
+///
+/// # Errors
+/// If the scene cannot be loaded, or has no such animation, camera or light.
+pub fn shot(subject: &Subject, quiet: bool) -> Result<Shot, Error> {
+    let scene = at_moment(complete(&subject.scene.scene, &subject.scene.loading)?, &subject.moment)?;
+    console::notices(&scene.notices, quiet);
+    let camera = camera(&scene, &subject.camera)?;
+    let view = scene.cameras[camera].view(subject.size.0, &scene.bounds());
+    let lights = lights(&scene, &subject.lights)?;
+    let camera = scene.cameras[camera].name.clone();
+    Ok(Shot { scene, camera, view, lights })
+}
+
 /// Index of the animation that `--animation` numbers or names, or 0, which may not exist.
 ///
 /// # Errors
@@ -133,11 +161,16 @@ pub fn lights(scene: &Scene, wanted: &[usize]) -> Result<Vec<usize>, Error> {
 /// # Errors
 /// If there is none.
 pub fn gpu(device: &Device) -> Result<Gpu, Error> {
+    Gpu::new(&gpu_options(device)).map_err(|e| Error::failed(chain(&e)))
+}
+
+/// Which adapters `device` allows.
+pub fn gpu_options(device: &Device) -> GpuOptions {
     let mut options = GpuOptions { adapter: device.adapter.clone(), ..GpuOptions::default() };
     if let Some(backend) = device.backend {
         options.backends = backend.backends();
     }
-    Gpu::new(&options).map_err(|e| Error::failed(chain(&e)))
+    options
 }
 
 /// An error with its causes, each said once.

@@ -64,6 +64,11 @@ fn wrong_usage_is_one_line_and_exit_code_2() {
         (&["info", "small.gltf", "other.gltf"], &["other.gltf"]),
         (&["info", "builtin:"], &["there are: "]),
         (&["gallery"], &["DIR"]),
+        (&["verify"], &["SCENE"]),
+        (&["verify", "builtin:nowher"], &["built-in scene 'nowher'", "there are: "]),
+        (&["verify", "small.gltf", "--technique", "everit"], &["everit", "everitt-kilgard", "all"]),
+        (&["verify", "small.gltf", "--light", "3"], &["'3'", "2 'torch'"]),
+        (&["adapters", "--backend", "vulkn"], &["vulkan", "gl"]),
         (&["bench", "builtin:nowhere"], &["built-in scene 'nowhere'", "there are: "]),
         (&["bench", "--frames", "0"], &["--frames", "0"]),
         (&["bench", "--fps", "0"], &["frames per second"]),
@@ -149,6 +154,7 @@ fn results_that_cannot_be_written_are_found_before_any_work() {
     for (args, words) in cases {
         zfail(folder.path(), &[&["render", "nothing.glb"], *args].concat()).fails(1, words);
     }
+    zfail(folder.path(), &["verify", "nothing.glb", "--report", "file"]).fails(1, &["'file'", "not a folder"]);
     zfail(folder.path(), &["gallery", "file"]).fails(1, &["'file'", "not a folder"]);
     assert_eq!(files(folder.path()), before);
     // The negative control: with a good destination the complaint is about the scene.
@@ -190,7 +196,7 @@ fn help_lists_every_option_of_the_contract() {
         ]
     );
     let overview = zfail(folder.path(), &["--help"]).ok().stdout;
-    for word in ["render", "info", "bench", "gallery"] {
+    for word in ["render", "info", "bench", "verify", "adapters", "gallery"] {
         assert!(overview.contains(word), "{overview}");
     }
     assert!(zfail(folder.path(), &["--version"]).ok().stdout.starts_with("zfail 0."));

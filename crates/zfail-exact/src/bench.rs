@@ -1,14 +1,8 @@
 //! Renders a recipe, asks the oracle, and compares both masks and counts.
 
 use crate::recipe::Recipe;
-use zfail_oracle::{Cast, CastTable, Guards, Oracle, Report, SizeMismatch, Truth};
-use zfail_plan::{
-    casting::{self, Casting},
-    glam::DVec4,
-    scene::{LightKind, Scene},
-    topology::{NONE, Topology, TopologyError},
-    view::View,
-};
+use zfail_oracle::{CastTable, Guards, Oracle, Report, SizeMismatch, Truth};
+use zfail_plan::{closure, scene::Scene, topology::TopologyError, view::View};
 use zfail_render::{AovKind, Aovs, Gpu, RenderError, Renderer, Settings};
 
 /// A scene that could not be compared.
@@ -104,38 +98,7 @@ pub fn truths(scene: &Scene, view: &View) -> Result<Vec<Truth>, BenchError> {
 /// If a mesh of the scene is invalid.
 pub fn truths_with(scene: &Scene, view: &View, guards: Guards) -> Result<Vec<Truth>, BenchError> {
     let oracle = Oracle::with_guards(scene, guards);
-    let judge = |(i, light)| Ok(oracle.judge(view, light, &casts(scene, i)?));
-    scene.lights.iter().enumerate().map(judge).collect()
-}
-
-/// The weights that the volumes are built with, which decide what the count is of; facing is left to the oracle.
-fn casts(scene: &Scene, light: usize) -> Result<CastTable, BenchError> {
-    let mut castings: Vec<(Topology, Vec<Casting>)> = Vec::new();
-    for instance in &scene.instances {
-        let topology = Topology::of(scene, instance.mesh)?;
-        let object_from_world = instance.world_from_object.inverse();
-        let object_light = match scene.lights[light].kind {
-            LightKind::Point { position, .. } | LightKind::Spot { position, .. } => {
-                let linear = instance.world_from_object.matrix3.inverse();
-                (linear * (position - instance.world_from_object.translation)).extend(1.0)
-            }
-            LightKind::Directional { direction } => {
-                DVec4::from((object_from_world.transform_vector3(-direction).normalize_or_zero(), 0.0))
-            }
-        };
-        let mut of_parts = Vec::new();
-        casting::castings(&topology, object_light.as_vec4(), &mut of_parts);
-        castings.push((topology, of_parts));
-    }
-    Ok(CastTable::from_fn(scene, |instance, triangle| {
-        let (topology, of_parts) = &castings[instance];
-        match topology.part_of[triangle] {
-            NONE => Cast::None,
-            part => match of_parts[part as usize] {
-                Casting::Front => Cast::Front,
-                Casting::Back => Cast::Back,
-                Casting::Double => Cast::Double,
-            },
-        }
-    }))
+    let topologies = closure::topologies(scene)?;
+    let judge = |(i, light)| oracle.judge(view, light, &CastTable::of_volumes(scene, &topologies, i));
+    Ok(scene.lights.iter().enumerate().map(judge).collect())
 }

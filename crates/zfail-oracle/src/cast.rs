@@ -3,7 +3,9 @@
 //! In: the weights that the volumes under test were built with. Out: a table that [`crate::Oracle::judge`] reads. It
 //! influences counts only; the lit verdict always comes from plain two-sided casting.
 
+use zfail_plan::casting::{self, Casting};
 use zfail_plan::scene::Scene;
+use zfail_plan::topology::{NONE, Topology};
 
 /// A triangle's casting policy (`c_t` as a function of the facing sign).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,6 +54,35 @@ impl CastTable {
         let count = |mesh: usize| scene.meshes.get(mesh).map_or(0, |m| m.triangles.len());
         let casts = scene.instances.iter().enumerate();
         Self { casts: casts.map(|(i, instance)| (0..count(instance.mesh)).map(|t| cast(i, t)).collect()).collect() }
+    }
+
+    /// The policies with which volumes are built for light number `light`: they decide what a count is of, and facing is
+    /// left to the oracle. `topologies` are those of the scene's meshes ([`zfail_plan::closure::topologies`]).
+    ///
+    /// # Panics
+    /// If there is no such light, or the topologies are those of another scene.
+    #[must_use]
+    pub fn of_volumes(scene: &Scene, topologies: &[Option<Topology>], light: usize) -> Self {
+        let mut castings: Vec<Vec<Casting>> = Vec::with_capacity(scene.instances.len());
+        for instance in &scene.instances {
+            let (mut of_parts, placement) = (Vec::new(), &instance.world_from_object);
+            let (kind, origin) = (&scene.lights[light].kind, placement.translation);
+            let object_light = casting::object_light(kind, &placement.matrix3.inverse(), origin);
+            if let (Some(topology), Some(object_light)) = (&topologies[instance.mesh], object_light) {
+                casting::castings(topology, object_light, &mut of_parts);
+            }
+            castings.push(of_parts);
+        }
+        Self::from_fn(scene, |instance, triangle| {
+            let topology = topologies[scene.instances[instance].mesh].as_ref();
+            let part = topology.map(|topology| topology.part_of[triangle]).filter(|&part| part != NONE);
+            match part.and_then(|part| castings[instance].get(part as usize)) {
+                None => Cast::None,
+                Some(Casting::Front) => Cast::Front,
+                Some(Casting::Back) => Cast::Back,
+                Some(Casting::Double) => Cast::Double,
+            }
+        })
     }
 
     /// The policy of one triangle; [`Cast::None`] for one the table does not know.

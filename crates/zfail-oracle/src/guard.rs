@@ -64,6 +64,19 @@ impl Doubt {
     /// Every reason, in the order of their discriminants.
     pub const ALL: [Self; 6] = [Self::Surface, Self::Boundary, Self::Depth, Self::EdgeOn, Self::Reach, Self::Alpha];
 
+    /// What to call it in a report.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Surface => "surface",
+            Self::Boundary => "boundary",
+            Self::Depth => "depth",
+            Self::EdgeOn => "edge-on",
+            Self::Reach => "reach",
+            Self::Alpha => "alpha",
+        }
+    }
+
     /// Whether what was left out for this reason is limited: the others are whole surfaces, not lines.
     #[must_use]
     pub const fn is_budgeted(self) -> bool {

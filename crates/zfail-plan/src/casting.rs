@@ -14,13 +14,26 @@
 //! numbers, so front faces suffice where the light's winding number is the least there is, back faces where it is the
 //! greatest.
 
+use crate::scene::LightKind;
 use crate::topology::{NONE, Shape, Topology};
-use glam::{DVec3, DVec4, Vec4};
+use glam::{DMat3, DVec3, DVec4, Vec4};
 use rayon::prelude::*;
 
 /// A light in a caster's object space, rounded to the f32 with which the GPU extrudes: `(position, 1)` or
 /// `(direction towards the light, 0)`.
 pub type ObjectLight = Vec4;
+
+/// The light in the object space of a caster at `origin` (world space) whose directions `object_from_world` turns; computed
+/// in f64 and rounded once. `None` if it is not finite, as for a transform that cannot be inverted.
+#[must_use]
+pub fn object_light(kind: &LightKind, object_from_world: &DMat3, origin: DVec3) -> Option<ObjectLight> {
+    let light = kind.homogeneous();
+    let to_object = *object_from_world * (light.truncate() - origin * light.w);
+    // Only the direction of a directional light matters; its length must not overflow f32.
+    let to_object = if light.w == 0.0 { to_object.try_normalize()? } else { to_object };
+    let rounded = to_object.extend(light.w).as_vec4();
+    rounded.is_finite().then_some(rounded)
+}
 
 /// Which faces of a part cast.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -4,29 +4,10 @@ mod shapes;
 
 use glam::{DVec3, DVec4, Vec4};
 use proptest::prelude::*;
-use std::collections::HashMap;
 use zfail_plan::casting::{self, Casting};
+use zfail_plan::closure::{of_weights, open_edges};
 use zfail_plan::topology::Topology;
 use zfail_plan::volume::{self, Volume};
-
-/// Directed edges of the drawn triangles, each run one way counted +1 and the other -1; the extruded copies of a
-/// directional light are one point.
-fn open_edges(indices: &[u32], volume: &Volume, directional: bool) -> usize {
-    let point = |i: u32| if directional && i & 1 == 1 { u32::MAX } else { i };
-    let mut sum: HashMap<(u32, u32), i32> = HashMap::new();
-    let mut add = |t: &[u32], sign: i32| {
-        for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
-            let (a, b) = (point(a), point(b));
-            if a != b {
-                *sum.entry((a.min(b), a.max(b))).or_default() += if a < b { sign } else { -sign };
-            }
-        }
-    };
-    let slice = |r: &std::ops::Range<u32>| &indices[r.start as usize..r.end as usize];
-    slice(&volume.outward()).chunks(3).for_each(|t| add(t, 1));
-    slice(&volume.light_cap_reversed).chunks(3).for_each(|t| add(t, -1));
-    sum.values().filter(|&&n| n != 0).count()
-}
 
 /// Signed crossings of the drawn volume by the ray from `from` along `along`: an independent count in f64.
 fn crossings(topology: &Topology, indices: &[u32], volume: &Volume, light: Vec4, from: DVec3, along: DVec3) -> i32 {
@@ -102,6 +83,7 @@ proptest! {
             let mut indices = Vec::new();
             let volume = volume::build(&topology, &c, &c, light.w == 0.0, &mut indices);
             prop_assert_eq!(open_edges(&indices, &volume, light.w == 0.0), 0);
+            prop_assert_eq!(of_weights(&topology, &c, light.w == 0.0).open_edges, 0);
         }
     }
 
@@ -113,6 +95,7 @@ proptest! {
         let mut indices = Vec::new();
         let volume = volume::build(&topology, &c, &c, false, &mut indices);
         prop_assert_eq!(open_edges(&indices, &volume, false), 0);
+        prop_assert_eq!(of_weights(&topology, &c, false).open_edges, 0);
         // Negative control: without one drawn triangle it is open.
         if volume.sides.end > volume.sides.start {
             let broken = Volume { sides: volume.sides.start + 3..volume.sides.end, ..volume };

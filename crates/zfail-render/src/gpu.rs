@@ -22,6 +22,27 @@ impl Default for GpuOptions {
     }
 }
 
+/// An adapter that could be opened.
+#[derive(Clone, Debug)]
+pub struct Adapter {
+    /// Name, backend and driver.
+    pub info: wgpu::AdapterInfo,
+    /// What it can do.
+    pub features: wgpu::Features,
+}
+
+impl Adapter {
+    /// Options that allow this adapter, and others only if nothing tells them from it.
+    #[must_use]
+    pub fn options(&self) -> GpuOptions {
+        GpuOptions {
+            backends: wgpu::Backends::from(self.info.backend),
+            adapter: Some(describe(&self.info)),
+            force_fallback: false,
+        }
+    }
+}
+
 /// An opened graphics device.
 #[derive(Debug)]
 pub struct Gpu {
@@ -76,12 +97,13 @@ impl Gpu {
 
     /// Every adapter that `options` allows, in the order in which [`Gpu::new`] tries them.
     #[must_use]
-    pub fn adapters(options: &GpuOptions) -> Vec<wgpu::AdapterInfo> {
+    pub fn adapters(options: &GpuOptions) -> Vec<Adapter> {
         let of_stage = |backends| {
             let found = pollster::block_on(instance(backends).enumerate_adapters(backends));
-            let mut infos: Vec<_> = found.iter().map(wgpu::Adapter::get_info).filter(|i| options.allows(i)).collect();
-            infos.sort_by_key(rank);
-            infos
+            let described = found.iter().map(|a| Adapter { info: a.get_info(), features: a.features() });
+            let mut adapters: Vec<_> = described.filter(|a| options.allows(&a.info)).collect();
+            adapters.sort_by_key(|a| rank(&a.info));
+            adapters
         };
         options.stages().flat_map(of_stage).collect()
     }

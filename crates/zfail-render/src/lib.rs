@@ -45,7 +45,7 @@ mod verdict_pass;
 
 pub use aov::{AovKind, Aovs, UnknownAov};
 pub use error::RenderError;
-pub use gpu::{Gpu, GpuOptions};
+pub use gpu::{Adapter, Gpu, GpuOptions};
 pub use picture::Picture;
 pub use renderer::Renderer;
 pub use settings::{Exposure, Settings, Terminator};

@@ -18,7 +18,6 @@ use crate::input;
 use measure::{Samples, Setup};
 use record::Record;
 use scenes::Course;
-use serde::Serialize;
 
 /// Measures, then prints.
 ///
@@ -30,7 +29,11 @@ pub fn run(args: &args::Bench) -> Result<(), Error> {
         let gpu = input::gpu(&args.device).ok();
         let lines = scaling::measure(&scaling::SIZES, gpu.as_ref(), args.verbosity.quiet)?;
         let device = gpu.as_ref().map(|gpu| gpu.info.name.as_str());
-        return if args.json { print_json(&lines) } else { console::print(&scaling::table(&lines, device)) };
+        return if args.json {
+            console::print(&console::json(&lines)?)
+        } else {
+            console::print(&scaling::table(&lines, device))
+        };
     }
     let names: Vec<&str> = match &args.scenes[..] {
         [] => scenes::DEFAULT.to_vec(),
@@ -56,11 +59,5 @@ pub fn run(args: &args::Bench) -> Result<(), Error> {
         }
     }
     progress.finish_and_clear();
-    if args.json { print_json(&records) } else { console::print(&table::text(&gpu, &records)) }
-}
-
-fn print_json(records: &[impl Serialize]) -> Result<(), Error> {
-    let json = serde_json::to_string_pretty(records)
-        .map_err(|e| Error::failed(format!("cannot encode the measurements: {e}")))?;
-    console::print(&format!("{json}\n"))
+    if args.json { console::print(&console::json(&records)?) } else { console::print(&table::text(&gpu, &records)) }
 }

@@ -4,6 +4,7 @@
 
 use super::failed;
 use crate::args::{self, Aov, Format};
+use crate::console;
 use crate::encode;
 use crate::error::Error;
 use indicatif::ProgressBar;
@@ -108,8 +109,5 @@ fn aov_files(aov: &Aov, aovs: &Aovs) -> Result<Vec<Vec<u8>>, Error> {
 }
 
 fn stats_file(stats: &FrameStats) -> Result<Vec<u8>, Error> {
-    let mut json =
-        serde_json::to_vec_pretty(stats).map_err(|e| Error::failed(format!("cannot encode the stats: {e}")))?;
-    json.push(b'\n');
-    Ok(json)
+    Ok(console::json(stats)?.into_bytes())
 }

@@ -4,7 +4,7 @@
 //! frame, whatever the number of lights.
 
 use super::Caster;
-use crate::casting::ObjectLight;
+use crate::casting::{self, ObjectLight};
 use crate::scene::{Bounds, LightKind};
 use crate::view::{Projection, View};
 use glam::{DAffine3, DMat3, DVec3, DVec4};
@@ -76,13 +76,7 @@ impl Placed {
 
     /// The light in object space, computed in f64 and rounded once; `None` if the transform cannot be inverted.
     pub fn object_light(&self, kind: &LightKind) -> Option<ObjectLight> {
-        let light = kind.homogeneous();
-        let to_object =
-            self.object_from_world_directions * (light.truncate() - self.world_from_object.translation * light.w);
-        // Only the direction of a directional light matters; its length must not overflow f32.
-        let to_object = if light.w == 0.0 { to_object.try_normalize()? } else { to_object };
-        let rounded = to_object.extend(light.w).as_vec4();
-        rounded.is_finite().then_some(rounded)
+        casting::object_light(kind, &self.object_from_world_directions, self.world_from_object.translation)
     }
 
     /// The homogeneous eye in object space.

@@ -1,0 +1,120 @@
+//! The report as a person reads it.
+
+use super::report::{LightReport, Report, Suspect};
+use std::fmt::Write;
+
+/// The whole report.
+pub fn text(report: &Report) -> String {
+    let mut text = String::new();
+    let [width, height] = report.size;
+    // Writing to a string cannot fail.
+    let _ = writeln!(
+        text,
+        "{} at {width}x{height} on {} ({}, driver {}, {})",
+        report.scene, report.adapter, report.backend, report.driver, report.depth_format
+    );
+    for light in &report.lights {
+        text += &of_light(light);
+    }
+    let closed = &report.closure;
+    let _ = writeln!(
+        text,
+        "closure: {} volumes of {} triangles, also under random weights, have {} open edges",
+        closed.volumes, closed.triangles, closed.open_edges
+    );
+    match (&report.suspect, report.complaint()) {
+        (_, None) => text += "pass: 0 wrong pixels\n",
+        (opinion, Some(complaint)) => {
+            let _ = writeln!(text, "MISMATCH: {complaint}");
+            if let Some(opinion) = opinion {
+                let who = match opinion.points_to {
+                    Suspect::Driver => "This points to a bug of the driver",
+                    Suspect::Zfail => "This points to a bug of zfail, please report it",
+                    Suspect::Unknown => "Whose bug it is cannot be told here",
+                };
+                let _ = writeln!(text, "{who}: {}.", opinion.because);
+            }
+        }
+    }
+    text
+}
+
+fn of_light(light: &LightReport) -> String {
+    let (mut text, judged) = (String::new(), &light.judged);
+    let excluded: usize = judged.excluded.values().sum();
+    let reasons: Vec<String> = judged.excluded.iter().map(|(reason, pixels)| format!("{reason} {pixels}")).collect();
+    let reasons = if reasons.is_empty() { String::new() } else { format!(" ({})", reasons.join(", ")) };
+    let _ = writeln!(
+        text,
+        "light {} '{}', {}: {} pixels checked ({} lit, {} in shadow), {excluded} left out{reasons}",
+        judged.light, judged.name, judged.kind, judged.checked, judged.lit, judged.shadowed
+    );
+    if let Some(why) = &judged.proves_little {
+        let _ = writeln!(text, "  this picture proves little: {why}");
+    }
+    for row in &light.techniques {
+        let _ = write!(
+            text,
+            "  {:<16} {} wrong pixels, {} wrong counts",
+            row.technique, row.wrong_pixels, row.wrong_counts
+        );
+        if let Some(first) = row.examples.first() {
+            let _ = write!(text, "; first at {},{}: {}, not {}", first.x, first.y, first.found, first.expected);
+        }
+        text.push('\n');
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::judged::JudgedLight;
+    use crate::verify::report::{ClosureReport, Example, Opinion, TechniqueReport};
+
+    fn report(wrong_pixels: usize) -> Report {
+        let examples = vec![Example { x: 7, y: 9, expected: 255, found: 0 }];
+        let techniques = vec![TechniqueReport { technique: "auto", wrong_pixels, wrong_counts: 0, examples }];
+        Report {
+            scene: "a.glb".to_owned(),
+            size: [64, 48],
+            adapter: "A".to_owned(),
+            backend: "vulkan".to_owned(),
+            driver: "1".to_owned(),
+            depth_format: "D".to_owned(),
+            closure: ClosureReport { volumes: 3, triangles: 12, open_edges: 0 },
+            lights: vec![LightReport {
+                judged: JudgedLight {
+                    light: 2,
+                    name: "sun".to_owned(),
+                    kind: "directional",
+                    checked: 5,
+                    background: 0,
+                    lit: 3,
+                    shadowed: 2,
+                    excluded: [("boundary", 1)].into(),
+                    proves_little: Some("it is small".to_owned()),
+                },
+                techniques,
+            }],
+            passed: wrong_pixels == 0,
+            suspect: Some(Opinion { points_to: Suspect::Driver, because: "B is right".to_owned() }),
+        }
+    }
+
+    #[test]
+    fn a_mismatch_says_where_and_whose() {
+        let said = text(&report(4));
+        for words in [
+            "light 2 'sun', directional: 5 pixels checked (3 lit, 2 in shadow), 1 left out (boundary 1)\n",
+            "  this picture proves little: it is small\n",
+            "4 wrong pixels, 0 wrong counts; first at 7,9: 0, not 255\n",
+            "MISMATCH: 4 wrong pixels\nThis points to a bug of the driver: B is right.\n",
+        ] {
+            assert!(said.contains(words), "{said}");
+        }
+        assert!(!said.contains("pass"));
+        let passed = text(&report(0));
+        assert!(passed.ends_with("pass: 0 wrong pixels\n") && !passed.contains("MISMATCH"), "{passed}");
+    }
+}

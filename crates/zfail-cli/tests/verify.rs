@@ -1,0 +1,80 @@
+//! `zfail verify` and `zfail adapters` on the machine's adapter.
+
+mod support;
+
+use serde_json::Value;
+use std::fs;
+use support::{files, has_gpu, small_scene, zfail};
+
+const TECHNIQUES: [&str; 5] = ["everitt-kilgard", "lengyel", "mcguire", "auto", "auto-on-device"];
+
+#[test]
+fn hard_scenes_pass_and_say_what_was_checked() {
+    if !has_gpu() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    for (scene, lights) in [("builtin:jail", 2), ("builtin:nested", 3), ("builtin:open", 2)] {
+        let run = zfail(folder.path(), &["verify", scene, "--size", "96x54", "--json", "-q"]).ok();
+        let report: Value = serde_json::from_str(&run.stdout).unwrap();
+        assert_eq!((&report["passed"], &report["suspect"]), (&true.into(), &Value::Null), "{scene}");
+        assert_eq!(report["closure"]["open_edges"], 0, "{scene}");
+        assert!(report["closure"]["volumes"].as_u64().unwrap() > 10, "{scene}");
+        let found = report["lights"].as_array().unwrap();
+        assert_eq!(found.len(), lights, "{scene}");
+        for light in found {
+            let number = |key: &str| light[key].as_u64().unwrap();
+            let excluded: u64 = light["excluded"].as_object().unwrap().values().map(|n| n.as_u64().unwrap()).sum();
+            assert_eq!(number("checked") + number("background") + excluded, 96 * 54, "{scene}");
+            assert!(number("lit") > 50 && number("shadowed") > 50, "{scene}: {light}");
+            let rows = light["techniques"].as_array().unwrap();
+            assert_eq!(rows.iter().map(|row| row["technique"].as_str().unwrap()).collect::<Vec<_>>(), TECHNIQUES);
+            assert!(rows.iter().all(|row| row["wrong_pixels"] == 0 && row["wrong_counts"] == 0), "{scene}");
+        }
+    }
+    assert!(files(folder.path()).is_empty());
+}
+
+#[test]
+fn reports_go_into_folders_of_their_own() {
+    if !has_gpu() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    small_scene(folder.path());
+    let verify =
+        ["verify", "small.gltf", "--size", "64x48", "--technique", "auto", "--light", "1", "--report", "new/r"];
+    let run = zfail(folder.path(), &verify).ok();
+    assert!(run.stdout.ends_with("pass: 0 wrong pixels\n"), "{}", run.stdout);
+    assert!(run.stdout.contains("light 1 'lamp', point: ") && !run.stdout.contains("light 0"), "{}", run.stdout);
+    let report = folder.path().join("new/r");
+    assert_eq!(files(&report), ["light-1-checked.png", "light-1-expected.png", "report.json"]);
+    let before = fs::read(report.join("report.json")).unwrap();
+    zfail(folder.path(), &verify).fails(1, &["'new/r'", "not empty"]);
+    assert_eq!(fs::read(report.join("report.json")).unwrap(), before);
+
+    // A camera that is not there is found before anything is written.
+    zfail(folder.path(), &["verify", "small.gltf", "--camera", "abov", "--report", "other"]).fails(2, &["'above'"]);
+    assert!(!folder.path().join("other").exists());
+}
+
+#[test]
+fn adapters_are_listed_in_the_order_of_preference() {
+    if !has_gpu() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let list: Value = serde_json::from_str(&zfail(folder.path(), &["adapters", "--json"]).ok().stdout).unwrap();
+    let list = list.as_array().unwrap();
+    let defaults: Vec<bool> = list.iter().map(|adapter| adapter["default"].as_bool().unwrap()).collect();
+    assert!(defaults[0] && defaults[1..].iter().all(|default| !default), "{defaults:?}");
+    let text = zfail(folder.path(), &["adapters"]).ok().stdout;
+    let name = list[0]["name"].as_str().unwrap();
+    assert!(text.starts_with(&format!("{name}  (default)\n  {}", list[0]["backend"].as_str().unwrap())), "{text}");
+
+    // What is listed first is what is used.
+    zfail(folder.path(), &["render", "builtin:open", "-o", "a.png", "--size", "8x8", "--stats", "s.json"]).ok();
+    let stats: Value = serde_json::from_slice(&fs::read(folder.path().join("s.json")).unwrap()).unwrap();
+    assert_eq!((&stats["adapter"], &stats["backend"]), (&list[0]["name"], &list[0]["backend"]));
+    zfail(folder.path(), &["adapters", "--adapter", "no such thing"]).fails(1, &["no graphics adapter"]);
+}
