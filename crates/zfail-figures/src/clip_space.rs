@@ -1,0 +1,105 @@
+//! The scene in the eye's clip space: whatever is seen lies in a box, and volumes end on its far side, at infinity
+//! (E&K 2002, Figures 2, 3 and 5).
+//!
+//! In: model, the eye's view, lights. Out: a drawing on paper.
+//!
+//! With the far plane at infinity and the near plane close to the eye, almost everything lies within a hair of the far
+//! plane. The figure takes the near plane as far away as it can without cutting what is visible; infinity stays where it is.
+
+use crate::alternate::clipped_scene;
+use crate::clipping::{Region, fan};
+use crate::drawing::{Drawing, Surfaces, flat};
+use crate::light_bounds::box_edges;
+use crate::model::Model;
+use crate::over_picture;
+use crate::palette::{self, with_opacity};
+use crate::paper::{self, Paper};
+use crate::plans::Plans;
+use crate::third_person::Camera;
+use crate::{Error, Overlay};
+use zfail_plan::glam::{DMat4, DVec3, DVec4};
+use zfail_plan::scene::Bounds;
+use zfail_plan::view::{Projection, View};
+
+/// The box is so deep, half its height being 1.
+const DEPTH: f64 = 2.4;
+
+/// The clip-space view of `paper`.
+pub fn compose(model: &mut Model, plans: &mut Plans, paper: &Paper<'_>) -> Result<Drawing, Error> {
+    let whole = plans.whole(model, paper.view, paper.lights)?;
+    let (view, near) = with_far_near_plane(model, paper.view);
+    let clip_from_anchored = model.clip_from_anchored(&view);
+    let region = Region::frustum(&clip_from_anchored);
+    let boxed = box_from_clip(view.aspect()) * clip_from_anchored;
+    let half = DVec3::new(view.aspect(), 1.0, 0.5 * DEPTH);
+    let corners = Bounds { min: -half, max: half }.corners();
+    let camera = Camera::around(&corners, DVec3::NEG_Z, DVec3::Y, paper.from, view.size);
+
+    let scene = clipped_scene(model, &region);
+    let surfaces = scene
+        .iter()
+        .flat_map(|&(corners, color)| paper::shaded(corners.map(|p| boxed * p), color, camera.position))
+        .collect();
+    let mut drawing = Drawing::new(camera.clip_from_origin, false, Surfaces::Paper(surfaces));
+    let by_light = paper.shows(Overlay::VolumesByLight);
+    let mut polygon = Vec::new();
+    for triangle in &whole.triangles {
+        region.triangle(triangle.corners, &mut polygon);
+        let (hue, opacity) = over_picture::glass_color(triangle, by_light, paper.lights);
+        for corners in fan(&polygon) {
+            let corners = corners.map(|p| boxed * p);
+            drawing.glass.extend(flat(corners, with_opacity(hue, 0.6 * opacity), triangle.winding.into()));
+        }
+    }
+    for (light, edge) in &whole.silhouettes {
+        if let Some(edge) = region.segment(*edge) {
+            let hue = if by_light { palette::light(paper.lights[*light]) } else { palette::INK };
+            drawing.line(edge.map(|p| boxed * p), paper.line(hue, 0.7));
+        }
+    }
+    if paper.shows(Overlay::Wireframe) {
+        let wires = over_picture::wires(model).filter_map(|(edge, _)| region.segment(edge));
+        wires.for_each(|edge| drawing.line(edge.map(|p| boxed * p), paper.line(palette::INK, 0.3)));
+    }
+    for edge in box_edges(corners.map(|c| c.extend(1.0))) {
+        drawing.line(edge, paper.line(palette::FRUSTUM, 1.0));
+    }
+    for &light in paper.lights {
+        let at = model.anchored(model.lights[light].kind.homogeneous());
+        if region.contains(at) {
+            let name = over_picture::light_name(model, light);
+            paper::marker(&mut drawing, &camera, boxed * at, palette::light(light), &name);
+        }
+    }
+    let label = |drawing: &mut Drawing, z: f64, name: &str| {
+        paper::label(drawing, &camera, DVec4::new(0.0, -1.12, z, 1.0), name);
+    };
+    label(&mut drawing, half.z, &format!("near plane, {near:.3} m"));
+    let finite = view.is_finite();
+    label(&mut drawing, -half.z, if finite { "far plane" } else { "far plane, at infinity" });
+    over_picture::volume_legend(&mut drawing, model, by_light, paper.lights);
+    Ok(drawing)
+}
+
+/// The box that stands for clip space: x to the right, y up, the near plane in front. Depth is reversed, 1 at the near
+/// plane.
+fn box_from_clip(aspect: f64) -> DMat4 {
+    let rows = [
+        DVec4::new(aspect, 0.0, 0.0, 0.0),
+        DVec4::new(0.0, 1.0, 0.0, 0.0),
+        DVec4::new(0.0, 0.0, DEPTH, -0.5 * DEPTH),
+        DVec4::W,
+    ];
+    DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose()
+}
+
+/// `view` with its near plane moved to just before what is nearest to it, and where that is.
+fn with_far_near_plane(model: &Model, view: &View) -> (View, f64) {
+    let Projection::Perspective { yfov, near, far } = view.projection else { return (*view, view.near()) };
+    let clip_from_anchored = model.clip_from_anchored(view);
+    let scene = clipped_scene(model, &Region::frustum(&clip_from_anchored));
+    let depths = scene.iter().flat_map(|(corners, _)| corners).map(|&p| (clip_from_anchored * p).w / p.w);
+    let nearest = 0.98 * depths.fold(f64::INFINITY, f64::min);
+    let near = if nearest.is_finite() { near.max(nearest) } else { near };
+    (View { projection: Projection::Perspective { yfov, near, far }, ..*view }, near)
+}
