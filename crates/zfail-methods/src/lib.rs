@@ -30,6 +30,8 @@ mod mcguire;
 
 mod ours;
 
+mod shadow_map;
+
 // What they share.
 mod error;
 mod geometry;

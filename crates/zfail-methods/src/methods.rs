@@ -5,7 +5,8 @@ use crate::procedure::Procedure;
 use crate::stage::Stage;
 use crate::{Error, Figures, Method, Options, Shadow, Unavailable};
 use crate::{
-    carmack_preload, everitt_kilgard, eye_count, heidmann, lengyel, mcguire, near_caps, ours, planned, zfail_finite,
+    carmack_preload, everitt_kilgard, eye_count, heidmann, lengyel, mcguire, near_caps, ours, planned, shadow_map,
+    zfail_finite,
 };
 use std::time::Instant;
 use zfail_plan::scene::{Light, Scene};
@@ -57,7 +58,7 @@ impl<'g> Methods<'g> {
     /// What it lacks.
     pub fn availability(&self, method: Method) -> Result<(), Unavailable> {
         match method {
-            Method::ShadowMap | Method::RayQuery => Err(Unavailable { method, reason: "it is being built".to_owned() }),
+            Method::RayQuery => Err(Unavailable { method, reason: "it is being built".to_owned() }),
             _ => Ok(()),
         }
     }
@@ -71,6 +72,9 @@ impl<'g> Methods<'g> {
     ) -> Result<(Vec<u8>, Figures), Error> {
         let Self { gpu, geometry, stage, .. } = self;
         let light = &geometry.lights[light];
+        if method == Method::ShadowMap {
+            return shadow_map::shadow(gpu, stage, geometry, view, light, &options.shadow_map);
+        }
         let mut planned = |measures| planned::shadow(gpu, stage, geometry, view, light, measures);
         match method {
             Method::Lengyel => return planned(lengyel::MEASURES),

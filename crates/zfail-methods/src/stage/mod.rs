@@ -8,6 +8,7 @@ mod pipelines;
 mod targets;
 
 pub use pipelines::{MASK, Recipe, SURFACE, state, surfaces};
+pub use targets::Counters;
 
 use crate::geometry::{Geometry, Placement};
 use crate::procedure::{Pass, Procedure};
@@ -113,6 +114,32 @@ impl Stage {
         Ok((gpu.read_texture(&targets.mask)?, render_ms))
     }
 
+    /// What `before` encodes, then a pass over the image in which `draw` writes verdicts itself. The mask, and milliseconds
+    /// of a plain run.
+    pub fn forward(
+        &mut self,
+        gpu: &Gpu,
+        size: [u32; 2],
+        before: impl Fn(&mut CommandEncoder),
+        draw: impl Fn(&mut RenderPass<'_>),
+    ) -> Result<(Vec<u8>, f64), Error> {
+        let targets = Targets::fit(&mut self.targets, gpu, size)?;
+        let run = || {
+            let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            before(&mut encoder);
+            draw(&mut targets.begin_forward(&mut encoder));
+            gpu.queue.submit([encoder.finish()]);
+        };
+        let render_ms = timed(gpu, run)?;
+        Ok((gpu.read_texture(&targets.mask)?, render_ms))
+    }
+
+    /// Counters, and a pipeline that counts what casts as it is drawn to a depth of `format`.
+    pub fn counting_surfaces(&self, device: &Device, format: wgpu::TextureFormat) -> (Counters, RenderPipeline) {
+        let counters = Counters::new(device, &self.pipelines.counters);
+        (counters, self.pipelines.counting_surfaces(device, format))
+    }
+
     /// How many fragments `draw` makes with pipelines that count.
     fn count(
         &mut self,
@@ -122,7 +149,7 @@ impl Stage {
         draw: impl Fn(&mut RenderPass<'_>),
     ) -> Result<u64, Error> {
         let targets = Targets::fit(&mut self.targets, gpu, size)?;
-        let counters = targets::Counters::new(&gpu.device, &self.pipelines.counters);
+        let counters = Counters::new(&gpu.device, &self.pipelines.counters);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let mut pass = targets.begin(&mut encoder, 0);
         pass.set_vertex_buffer(1, placements.slice(..));

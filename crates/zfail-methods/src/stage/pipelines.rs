@@ -81,7 +81,15 @@ impl Pipelines {
         })
     }
 
-    /// For the same volumes in the instrumented run, which counts every fragment.
+    /// For surfaces, from both sides, in an instrumented run that draws to a depth of `format`.
+    pub fn counting_surfaces(&self, device: &Device, format: TextureFormat) -> RenderPipeline {
+        let depth = &state(format, false, CompareFunction::Always, StencilState::default());
+        let (module, layouts) = (&self.module, &[Some(&self.counters)]);
+        let recipe = Recipe { module, layouts, fragment: Some("count"), target: None, depth };
+        recipe.pipeline(device, "place", SURFACE, PrimitiveState::default())
+    }
+
+    /// For volumes in the instrumented run, which counts every fragment.
     pub fn counting(&mut self, device: &Device, cull: Option<Face>, clockwise: bool) -> &RenderPipeline {
         let (module, format, counters) = (&self.module, self.depth_stencil, &self.counters);
         self.counting.entry((cull, clockwise)).or_insert_with(|| {
