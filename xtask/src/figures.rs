@@ -1,7 +1,7 @@
 //! The guide's figures and table, made anew by the program: `cargo xtask figures [FILTER]`.
 //!
-//! In: the list below. Out: `docs/guide/figures/*.png` and `docs/guide/tables/compare.md`. Each command runs in an empty folder;
-//! one of the files that it leaves there is the figure. Beneath its figure the guide shows the command as it stands here, without
+//! In: the list below. Out: `docs/guide/figures/*.png` and `docs/guide/tables/compare.md`. Each command runs in a folder with
+//! nothing but the guide's own scenes; one of the files that it leaves there is the figure. Beneath its figure the guide shows the command as it stands here, without
 //! the options that only fit the picture into the page.
 
 use crate::{cargo, root};
@@ -49,24 +49,23 @@ const FIGURES: &[Figure] = &[
     picture("container-volumes", "render builtin:container --light 0 --overlay volumes"),
     picture("container-silhouettes", "render builtin:container --light 0 --overlay silhouettes"),
     picture("open", "render builtin:open"),
-    sheet("compare-nested", SMALL, "compare builtin:nested --method heidmann-two-pass,eye-count,everitt-kilgard"),
-    sheet("compare-near", SMALL, "compare builtin:nested --method carmack-preload,near-caps"),
+    sheet("compare-nested", SMALL, "compare builtin:nested --method heidmann-two-pass,eye-count,carmack-preload"),
     picture("jail", "render builtin:jail"),
     picture("jail-stencil", "render builtin:jail --light 0 --overlay stencil"),
-    sheet("compare-finite", SMALL, "compare builtin:container --method finite-z-fail,everitt-kilgard"),
+    sheet("compare-finite", SMALL, "compare scenes/close-lamp.gltf --method finite-z-fail,everitt-kilgard"),
     picture("container-alternate", "render builtin:container --light 0 --overlay alternate"),
     picture("container-clip-space", "render builtin:container --light 0 --overlay clip-space"),
     picture("sun-clip-space", "render builtin:sun --camera 1 --light 0 --overlay clip-space"),
-    sheet("compare-two-sided", SMALL, "compare builtin:cathedral --method heidmann-two-pass,heidmann-two-sided"),
+    picture("ortho", "render builtin:ortho"),
     picture("stacked", "render builtin:stacked"),
     picture("stacked-stencil", "render builtin:stacked --light 0 --overlay stencil"),
+    sheet("compare-stacked", SMALL, "compare builtin:stacked --method everitt-kilgard,zfail"),
     picture("cathedral-cases", "render builtin:cathedral --camera 1 --light 0 --technique mcguire --overlay cases"),
     picture("cathedral-pyramid", "render builtin:cathedral --light 0 --overlay pyramid"),
     picture("stage-scissors", "render builtin:stage --light 0 --overlay scissors"),
     picture("cathedral-cases-auto", "render builtin:cathedral --camera 1 --light 0 --overlay cases"),
     picture("anemone-silhouettes", "render builtin:anemone --time 1 --light 0 --overlay silhouettes"),
     picture("foliage-wireframe", "render builtin:foliage --camera 1 --overlay wireframe"),
-    picture("ortho", "render builtin:ortho"),
     sheet("compare-all", SMALL, "compare builtin:nested"),
     sheet("compare-shadow-map", SMALL, "compare builtin:container --method shadow-map,zfail"),
     picture("room-volumes", "render builtin:room --overlay volumes-by-light"),
@@ -77,8 +76,19 @@ const PAGE: &str = "512x288";
 /// Of one picture on a contact sheet.
 const SMALL: &str = "240x135";
 
-/// The built-in scenes on which the papers' claims are shown.
-const HARD_SCENES: [&str; 8] = ["container", "nested", "room", "cathedral", "sun", "staircase", "jail", "stacked"];
+/// The scenes on which the papers' claims are shown.
+const HARD_SCENES: [&str; 10] = [
+    "builtin:container",
+    "builtin:nested",
+    "builtin:cathedral",
+    "builtin:stage",
+    "builtin:room",
+    "builtin:sun",
+    "builtin:jail",
+    "builtin:staircase",
+    "builtin:stacked",
+    "scenes/close-lamp.gltf",
+];
 
 /// Makes the figures whose names contain `filter` (all without one), and with them the table.
 ///
@@ -117,11 +127,12 @@ impl Figure {
 /// The table of wrong pixels, from what the program writes for programs.
 fn table(program: &Path) -> Result<(), String> {
     let folder = scratch()?;
-    for scene in HARD_SCENES {
-        let of = format!("builtin:{scene}");
-        execute(program, &folder, ["compare", of.as_str(), "--size", "160x100", "-o", scene].map(OsStr::new))?;
+    let mut results = Vec::new();
+    for (i, scene) in HARD_SCENES.iter().enumerate() {
+        let output = i.to_string();
+        execute(program, &folder, ["compare", scene, "--size", "160x100", "-o", &output].map(OsStr::new))?;
+        results.push(folder.join(output).join("compare.json"));
     }
-    let results = HARD_SCENES.map(|scene| folder.join(scene).join("compare.json"));
     let text = example("compare_table", &results)?;
     let file = guide().join("tables").join("compare.md");
     create(&guide().join("tables"))?;
@@ -163,14 +174,24 @@ fn failure(command: &Command, output: &Output) -> String {
     format!("{command:?} failed ({}): {}", output.status, String::from_utf8_lossy(&output.stderr))
 }
 
-/// An empty folder.
+/// A folder with nothing but the guide's own scenes.
 fn scratch() -> Result<PathBuf, String> {
     let folder = root().join("target").join("figures");
     if folder.exists() {
         fs::remove_dir_all(&folder).map_err(|e| format!("cannot empty {}: {e}", folder.display()))?;
     }
-    create(&folder)?;
+    copy_files(&guide().join("scenes"), &folder.join("scenes"))?;
     Ok(folder)
+}
+
+fn copy_files(from: &Path, to: &Path) -> Result<(), String> {
+    create(to)?;
+    let fault = |e: std::io::Error| format!("cannot copy {}: {e}", from.display());
+    for entry in fs::read_dir(from).map_err(fault)? {
+        let entry = entry.map_err(fault)?;
+        fs::copy(entry.path(), to.join(entry.file_name())).map_err(fault)?;
+    }
+    Ok(())
 }
 
 fn create(folder: &Path) -> Result<(), String> {
