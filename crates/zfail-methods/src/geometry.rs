@@ -63,6 +63,17 @@ impl Geometry {
         })
     }
 
+    /// The same on another device.
+    pub fn on(&self, device: &wgpu::Device) -> Self {
+        let mesh = |mesh: &Mesh| Mesh::upload(device, mesh.topology.clone(), mesh.visible.clone());
+        Self {
+            meshes: self.meshes.iter().map(|slot| slot.as_ref().map(mesh)).collect(),
+            instances: self.instances.clone(),
+            lights: self.lights.clone(),
+            bounds: self.bounds,
+        }
+    }
+
     /// The instances that cast shadows from `light`, with their numbers.
     pub fn casters<'a>(&'a self, light: &'a Light) -> impl Iterator<Item = (usize, &'a Instance, &'a Mesh)> {
         let casts = |&(i, instance): &(usize, &Instance)| instance.casts_shadow && !light.excluded.contains(&i);
@@ -105,6 +116,10 @@ impl Mesh {
                 (indices, material(p.material).is_some_and(|material| material.double_sided))
             })
             .collect();
+        Ok(Self::upload(device, topology, visible))
+    }
+
+    fn upload(device: &wgpu::Device, topology: Topology, visible: Vec<(Range<u32>, bool)>) -> Self {
         let casting: Vec<[u32; 3]> = topology
             .triangles
             .iter()
@@ -120,14 +135,14 @@ impl Mesh {
         let buffer = |contents: &[u8], usage| {
             device.create_buffer_init(&BufferInitDescriptor { label: Some("mesh"), contents, usage: usage | traced })
         };
-        Ok(Self {
+        Self {
             positions: buffer(bytemuck::cast_slice(&topology.positions), wgpu::BufferUsages::VERTEX),
             triangles: buffer(bytemuck::cast_slice(&topology.triangles), wgpu::BufferUsages::INDEX),
             casting: buffer(bytemuck::cast_slice(&casting), wgpu::BufferUsages::INDEX),
             casting_len: 3 * casting.len() as u32,
             visible,
             topology,
-        })
+        }
     }
 }
 

@@ -32,6 +32,8 @@ mod ours;
 
 mod shadow_map;
 
+mod ray_query;
+
 // What they share.
 mod error;
 mod geometry;

@@ -2,12 +2,14 @@
 
 use crate::geometry::Geometry;
 use crate::procedure::Procedure;
+use crate::ray_query::RayTracer;
 use crate::stage::Stage;
 use crate::{Error, Figures, Method, Options, Shadow, Unavailable};
 use crate::{
     carmack_preload, everitt_kilgard, eye_count, heidmann, lengyel, mcguire, near_caps, ours, planned, shadow_map,
     zfail_finite,
 };
+use std::cell::OnceCell;
 use std::time::Instant;
 use zfail_plan::scene::{Light, Scene};
 use zfail_plan::view::View;
@@ -22,6 +24,8 @@ pub struct Methods<'g> {
     stage: Stage,
     /// What the light reaches if nothing casts, for the last view and light.
     reach: Option<(View, usize, Vec<u8>)>,
+    /// Opened when it is first asked for, or why it cannot be.
+    rays: OnceCell<Result<RayTracer, String>>,
 }
 
 impl<'g> Methods<'g> {
@@ -34,7 +38,7 @@ impl<'g> Methods<'g> {
         let renderer = Renderer::new(gpu, scene)?;
         let geometry = Geometry::new(&gpu.device, scene)?;
         gpu.check()?;
-        Ok(Self { gpu, renderer, geometry, stage: Stage::new(gpu), reach: None })
+        Ok(Self { gpu, renderer, geometry, stage: Stage::new(gpu), reach: None, rays: OnceCell::new() })
     }
 
     /// What light number `light` reaches in `view`, according to `method`.
@@ -57,10 +61,11 @@ impl<'g> Methods<'g> {
     /// # Errors
     /// What it lacks.
     pub fn availability(&self, method: Method) -> Result<(), Unavailable> {
-        match method {
-            Method::RayQuery => Err(Unavailable { method, reason: "it is being built".to_owned() }),
-            _ => Ok(()),
+        if method != Method::RayQuery {
+            return Ok(());
         }
+        let rays = self.rays.get_or_init(|| RayTracer::new(&self.gpu.info, &self.geometry));
+        rays.as_ref().map(|_| ()).map_err(|reason| Unavailable { method, reason: reason.clone() })
     }
 
     fn verdict(
@@ -70,7 +75,10 @@ impl<'g> Methods<'g> {
         light: usize,
         options: &Options,
     ) -> Result<(Vec<u8>, Figures), Error> {
-        let Self { gpu, geometry, stage, .. } = self;
+        let Self { gpu, geometry, stage, rays, .. } = self;
+        if let (Method::RayQuery, Some(Ok(rays))) = (method, rays.get_mut()) {
+            return rays.shadow(view, light);
+        }
         let light = &geometry.lights[light];
         if method == Method::ShadowMap {
             return shadow_map::shadow(gpu, stage, geometry, view, light, &options.shadow_map);

@@ -11,16 +11,13 @@
 //! walkthroughs" (C); here only what a spot light does not reach does.
 
 use crate::geometry::Geometry;
-use crate::stage::{self, MASK, Recipe, SURFACE, Stage, draw_surfaces, state, surfaces};
+use crate::stage::{self, Stage, Surfaces};
 use crate::{Error, Figures, ShadowMapOptions};
 use bytemuck::{Pod, Zeroable};
 use std::f64::consts::FRAC_PI_2;
 use std::time::Instant;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
-use wgpu::{
-    CompareFunction, Device, Operations, PrimitiveState, RenderPipeline, StencilState, TextureFormat, TextureUsages,
-    TextureView, TextureViewDescriptor,
-};
+use wgpu::{Device, Operations, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor};
 use zfail_plan::glam::{DAffine3, DMat3, DMat4, DVec3};
 use zfail_plan::scene::{Bounds, Light, LightKind};
 use zfail_plan::view::{Projection, View};
@@ -74,12 +71,8 @@ pub fn shadow(
     let planning_ms = start.elapsed().as_secs_f64() * 1e3;
 
     let layers = layers(device, options.resolution, maps.faces.len() as u32);
-    let lookup = Lookup::new(gpu, &uniform, &layers.all);
-    let depth = state(DEPTH, true, CompareFunction::GreaterEqual, StencilState::default());
-    let module = device.create_shader_module(wgpu::include_wgsl!("shadow_map.wgsl"));
-    let recipe = Recipe { module: &module, layouts: &[], fragment: None, target: None, depth: &depth };
-    // Everything casts from both sides.
-    let map_pipeline = recipe.pipeline(device, "place", SURFACE, PrimitiveState::default());
+    let surfaces = lookup(gpu, &uniform, &layers.all);
+    let map_pipeline = stage.map_pipeline(device, DEPTH);
     let placed: Vec<wgpu::Buffer> =
         maps.faces.iter().map(|face| stage::placements(device, &geometry.placements(face))).collect();
     let draw_maps = |encoder: &mut wgpu::CommandEncoder, bind: &dyn Fn(&mut wgpu::RenderPass<'_>)| {
@@ -103,19 +96,9 @@ pub fn shadow(
         }
     };
 
-    let eye = stage::placements(device, &geometry.placements(view));
-    let (mask, render_ms) = stage.forward(
-        gpu,
-        view.size,
-        |encoder| draw_maps(encoder, &|pass| pass.set_pipeline(&map_pipeline)),
-        |pass| {
-            pass.set_vertex_buffer(1, eye.slice(..));
-            pass.set_bind_group(0, &lookup.bind_group, &[]);
-            draw_surfaces(pass, geometry, |mirrored, double| {
-                &lookup.pipelines[usize::from(mirrored)][usize::from(double)]
-            });
-        },
-    )?;
+    let (mask, render_ms) = stage.forward(gpu, geometry, view, &surfaces, |encoder| {
+        draw_maps(encoder, &|pass| pass.set_pipeline(&map_pipeline));
+    })?;
     let (counters, counting) = stage.counting_surfaces(device, DEPTH);
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     draw_maps(&mut encoder, &|pass| {
@@ -125,7 +108,7 @@ pub fn shadow(
     let fragments = counters.read(gpu, encoder)?;
     let once: u64 = geometry.casters(light).map(|(.., mesh)| u64::from(mesh.casting_len / 3)).sum();
     let triangles = once * maps.faces.len() as u64;
-    let passes = maps.faces.len() as u32 + 1;
+    let passes = maps.faces.len() as u32 + 2;
     Ok((mask, Figures { triangles, vertices: 3 * triangles, fragments, passes, planning_ms, render_ms }))
 }
 
@@ -242,55 +225,33 @@ fn layers(device: &Device, resolution: u32, count: u32) -> Layers {
     Layers { all: view(wgpu::TextureViewDimension::D2Array, 0, count), each }
 }
 
-/// What the visible surfaces are drawn with.
-struct Lookup {
-    pipelines: [[RenderPipeline; 2]; 2],
-    bind_group: wgpu::BindGroup,
-}
-
-impl Lookup {
-    fn new(gpu: &Gpu, uniform: &MapUniform, maps: &TextureView) -> Self {
-        let device = &gpu.device;
-        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty,
-            count: None,
-        };
-        let buffer = wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        };
-        let texture = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Depth,
-            view_dimension: wgpu::TextureViewDimension::D2Array,
-            multisampled: false,
-        };
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("shadow map"),
-            entries: &[entry(0, buffer), entry(1, texture)],
-        });
-        let uniform = device.create_buffer_init(&BufferInitDescriptor {
-            label: Some("shadow map"),
-            contents: bytemuck::bytes_of(uniform),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
-        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("shadow map"),
-            layout: &layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(maps) },
-            ],
-        });
-        let module = device.create_shader_module(wgpu::include_wgsl!("shadow_map.wgsl"));
-        let depth = state(gpu.depth_stencil, true, CompareFunction::GreaterEqual, StencilState::default());
-        let pipelines = surfaces(|primitive| {
-            let layouts = &[Some(&layout)];
-            let recipe = Recipe { module: &module, layouts, fragment: Some("lit"), target: Some(MASK), depth: &depth };
-            recipe.pipeline(device, "place", SURFACE, primitive)
-        });
-        Self { pipelines, bind_group }
-    }
+/// Surfaces that are looked up in the maps.
+fn lookup(gpu: &Gpu, uniform: &MapUniform, maps: &TextureView) -> Surfaces {
+    let device = &gpu.device;
+    let entry =
+        |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None };
+    let buffer = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    let texture = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Depth,
+        view_dimension: wgpu::TextureViewDimension::D2Array,
+        multisampled: false,
+    };
+    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("shadow map"),
+        entries: &[entry(0, buffer), entry(1, texture)],
+    });
+    let uniform = device.create_buffer_init(&BufferInitDescriptor {
+        label: Some("shadow map"),
+        contents: bytemuck::bytes_of(uniform),
+        usage: wgpu::BufferUsages::UNIFORM,
+    });
+    let entries = [
+        wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
+        wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(maps) },
+    ];
+    Surfaces::new(gpu, ["", include_str!("shadow_map.wgsl")], &layout, &entries)
 }

@@ -4,6 +4,9 @@ use crate::{RenderError, read_back};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use zfail::CostModel;
 
+/// What measuring GPU time takes, around passes and within.
+const TIMING: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
+
 /// Which adapter to use.
 #[derive(Clone, Debug)]
 pub struct GpuOptions {
@@ -110,12 +113,7 @@ impl Gpu {
 
     async fn from_adapter(adapter: &wgpu::Adapter) -> Result<Self, String> {
         let info = adapter.get_info();
-        // GL drivers report timer values that are not times (Mesa's software GL).
-        let timing = if info.backend == wgpu::Backend::Gl {
-            wgpu::Features::empty()
-        } else {
-            wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES
-        };
+        let timing = if info.backend == wgpu::Backend::Gl { wgpu::Features::empty() } else { TIMING };
         let features = zfail::wanted_features(adapter.features()) | (adapter.features() & timing);
         let (device, queue) = adapter
             .request_device(&wgpu::DeviceDescriptor {
@@ -126,24 +124,31 @@ impl Gpu {
             })
             .await
             .map_err(|e| e.to_string())?;
+        Ok(Self::from_device(device, queue, info))
+    }
+
+    /// Takes over a device that somebody else has opened, on the adapter that `info` describes. It should have the features
+    /// that [`zfail::wanted_features`] names.
+    #[must_use]
+    pub fn from_device(device: wgpu::Device, queue: wgpu::Queue, info: wgpu::AdapterInfo) -> Self {
         let failure = Arc::new(Mutex::new(None));
         let slot = Arc::clone(&failure);
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             slot.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert_with(|| error.to_string());
         }));
-        Ok(Self {
+        // GL drivers report timer values that are not times (Mesa's software GL).
+        let times = |features| info.backend != wgpu::Backend::Gl && device.features().contains(features);
+        Self {
             depth_stencil: zfail::depth_stencil_format(device.features()),
-            timestamps: device.features().contains(wgpu::Features::TIMESTAMP_QUERY),
+            timestamps: times(wgpu::Features::TIMESTAMP_QUERY),
             // A software rasteriser works on many draws at once.
-            timestamps_inside: device.features().contains(timing)
-                && !timing.is_empty()
-                && info.device_type != wgpu::DeviceType::Cpu,
+            timestamps_inside: times(TIMING) && info.device_type != wgpu::DeviceType::Cpu,
             device,
             queue,
             info,
             costs: OnceLock::new(),
             failure,
-        })
+        }
     }
 
     /// Waits until the device has done everything that was submitted.

@@ -7,7 +7,7 @@
 mod pipelines;
 mod targets;
 
-pub use pipelines::{MASK, Recipe, SURFACE, state, surfaces};
+pub use pipelines::Surfaces;
 pub use targets::Counters;
 
 use crate::geometry::{Geometry, Placement};
@@ -104,7 +104,7 @@ impl Stage {
             let mut pass = targets.begin(&mut encoder, start);
             set_depth_range(&mut pass, view.size, 0.0..1.0 - ledge);
             pass.set_vertex_buffer(1, placements.slice(..));
-            draw_surfaces(&mut pass, geometry, |mirrored, double_sided| pipelines.surface(mirrored, double_sided));
+            draw_surfaces(&mut pass, geometry, &pipelines.surfaces);
             count(&mut pass);
             drop(pass);
             verdict(&mut encoder, targets, pipelines);
@@ -114,24 +114,40 @@ impl Stage {
         Ok((gpu.read_texture(&targets.mask)?, render_ms))
     }
 
-    /// What `before` encodes, then a pass over the image in which `draw` writes verdicts itself. The mask, and milliseconds
-    /// of a plain run.
+    /// What `before` encodes, then depth, then every visible surface once more with `surfaces`, which write the verdict. What
+    /// they wrote, and milliseconds of a plain run.
     pub fn forward(
         &mut self,
         gpu: &Gpu,
-        size: [u32; 2],
+        geometry: &Geometry,
+        view: &View,
+        surfaces: &Surfaces,
         before: impl Fn(&mut CommandEncoder),
-        draw: impl Fn(&mut RenderPass<'_>),
     ) -> Result<(Vec<u8>, f64), Error> {
-        let targets = Targets::fit(&mut self.targets, gpu, size)?;
+        let placements = placements(&gpu.device, &geometry.placements(view));
+        let targets = Targets::fit(&mut self.targets, gpu, view.size)?;
+        let pipelines = &self.pipelines;
         let run = || {
             let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             before(&mut encoder);
-            draw(&mut targets.begin_forward(&mut encoder));
+            let mut pass = targets.begin(&mut encoder, 0);
+            pass.set_vertex_buffer(1, placements.slice(..));
+            draw_surfaces(&mut pass, geometry, &pipelines.surfaces);
+            drop(pass);
+            let mut pass = targets.begin_verdict(&mut encoder);
+            pass.set_vertex_buffer(1, placements.slice(..));
+            pass.set_bind_group(0, &surfaces.bind_group, &[]);
+            draw_surfaces(&mut pass, geometry, &surfaces.pipelines);
+            drop(pass);
             gpu.queue.submit([encoder.finish()]);
         };
         let render_ms = timed(gpu, run)?;
         Ok((gpu.read_texture(&targets.mask)?, render_ms))
+    }
+
+    /// Draws what casts, from both sides, to a depth of `format` and nothing else.
+    pub fn map_pipeline(&self, device: &Device, format: wgpu::TextureFormat) -> RenderPipeline {
+        self.pipelines.map(device, format)
     }
 
     /// Counters, and a pipeline that counts what casts as it is drawn to a depth of `format`.
@@ -204,19 +220,15 @@ impl Ready<'_> {
     }
 }
 
-/// Draws all that is visible, with the pipeline for each winding and for one or two sides.
-pub fn draw_surfaces<'p>(
-    pass: &mut RenderPass<'_>,
-    geometry: &Geometry,
-    pipeline: impl Fn(bool, bool) -> &'p RenderPipeline,
-) {
+/// Draws all that is visible, with the pipelines for each winding and for one or two sides.
+fn draw_surfaces(pass: &mut RenderPass<'_>, geometry: &Geometry, pipelines: &[[RenderPipeline; 2]; 2]) {
     for (number, instance) in (0..).zip(&geometry.instances) {
         let Some(mesh) = &geometry.meshes[instance.mesh] else { continue };
         let mirrored = instance.world_from_object.matrix3.determinant() < 0.0;
         pass.set_vertex_buffer(0, mesh.positions.slice(..));
         pass.set_index_buffer(mesh.triangles.slice(..), wgpu::IndexFormat::Uint32);
         for (range, double_sided) in &mesh.visible {
-            pass.set_pipeline(pipeline(mirrored, *double_sided));
+            pass.set_pipeline(&pipelines[usize::from(mirrored)][usize::from(*double_sided)]);
             pass.draw_indexed(range.clone(), 0, number..number + 1);
         }
     }

@@ -12,6 +12,7 @@ use wgpu::{
     RenderPipeline, RenderPipelineDescriptor, ShaderModule, ShaderStages, StencilFaceState, StencilState,
     TextureFormat, VertexBufferLayout, VertexFormat, VertexState, VertexStepMode,
 };
+use zfail_render::Gpu;
 
 /// The format of masks on the device.
 pub const MASK: TextureFormat = TextureFormat::R8Unorm;
@@ -23,8 +24,8 @@ pub struct Pipelines {
     depth_stencil: TextureFormat,
     /// Of the instrumented run: its counters.
     pub counters: BindGroupLayout,
-    /// Surfaces, by whether they mirror and are seen from both sides.
-    surfaces: [[RenderPipeline; 2]; 2],
+    /// Depth of surfaces, by whether they mirror and are seen from both sides.
+    pub surfaces: [[RenderPipeline; 2]; 2],
     pub verdict: RenderPipeline,
     volumes: HashMap<(Pass, bool), RenderPipeline>,
     counting: HashMap<(Option<Face>, bool), RenderPipeline>,
@@ -65,11 +66,6 @@ impl Pipelines {
         Self { module, depth_stencil, counters, surfaces, verdict, volumes, counting }
     }
 
-    /// For surfaces as the depth pass draws them.
-    pub fn surface(&self, mirrored: bool, double_sided: bool) -> &RenderPipeline {
-        &self.surfaces[usize::from(mirrored)][usize::from(double_sided)]
-    }
-
     /// For volumes whose outside is `clockwise`, as `pass` counts them.
     pub fn volume(&mut self, device: &Device, pass: &Pass, clockwise: bool) -> &RenderPipeline {
         let (module, format) = (&self.module, self.depth_stencil);
@@ -79,6 +75,13 @@ impl Pipelines {
             let recipe = Recipe { module, layouts: &[], fragment: None, target: None, depth };
             recipe.pipeline(device, "place", VOLUME, primitive(pass.cull, clockwise))
         })
+    }
+
+    /// For surfaces, from both sides, drawn to a depth of `format`.
+    pub fn map(&self, device: &Device, format: TextureFormat) -> RenderPipeline {
+        let depth = &state(format, true, CompareFunction::GreaterEqual, StencilState::default());
+        let recipe = Recipe { module: &self.module, layouts: &[], fragment: None, target: None, depth };
+        recipe.pipeline(device, "place", SURFACE, PrimitiveState::default())
     }
 
     /// For surfaces, from both sides, in an instrumented run that draws to a depth of `format`.
@@ -100,8 +103,41 @@ impl Pipelines {
     }
 }
 
+/// What draws every visible surface and writes its verdict.
+#[derive(Debug)]
+pub struct Surfaces {
+    pub pipelines: [[RenderPipeline; 2]; 2],
+    pub bind_group: wgpu::BindGroup,
+}
+
+impl Surfaces {
+    /// With a fragment program that has the entry point `lit` and the resources of `layout`; `extensions` are those that it
+    /// enables.
+    pub fn new(
+        gpu: &Gpu,
+        [extensions, program]: [&str; 2],
+        layout: &BindGroupLayout,
+        entries: &[wgpu::BindGroupEntry<'_>],
+    ) -> Self {
+        let source = [extensions, include_str!("surface.wgsl"), program].concat();
+        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("surfaces"),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        });
+        let depth = state(gpu.depth_stencil, false, CompareFunction::GreaterEqual, StencilState::default());
+        let layouts = &[Some(layout)];
+        let pipelines = surfaces(|primitive| {
+            let recipe = Recipe { module: &module, layouts, fragment: Some("lit"), target: Some(MASK), depth: &depth };
+            recipe.pipeline(&gpu.device, "place", SURFACE, primitive)
+        });
+        let label = Some("surfaces");
+        let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label, layout, entries });
+        Self { pipelines, bind_group }
+    }
+}
+
 /// One pipeline for surfaces that mirror or not, and are seen from both sides or not.
-pub fn surfaces(mut make: impl FnMut(PrimitiveState) -> RenderPipeline) -> [[RenderPipeline; 2]; 2] {
+fn surfaces(mut make: impl FnMut(PrimitiveState) -> RenderPipeline) -> [[RenderPipeline; 2]; 2] {
     [false, true].map(|mirrored| {
         [false, true].map(|double_sided| make(primitive((!double_sided).then_some(Face::Back), mirrored)))
     })
@@ -113,13 +149,13 @@ fn primitive(cull_mode: Option<Face>, clockwise: bool) -> PrimitiveState {
 }
 
 /// A depth and stencil test without bias.
-pub fn state(format: TextureFormat, write: bool, compare: CompareFunction, stencil: StencilState) -> DepthStencilState {
+fn state(format: TextureFormat, write: bool, compare: CompareFunction, stencil: StencilState) -> DepthStencilState {
     let (depth_write_enabled, depth_compare) = (Some(write), Some(compare));
     DepthStencilState { format, depth_write_enabled, depth_compare, stencil, bias: wgpu::DepthBiasState::default() }
 }
 
 /// What pipelines of this crate differ in.
-pub struct Recipe<'a> {
+struct Recipe<'a> {
     pub module: &'a ShaderModule,
     pub layouts: &'a [Option<&'a BindGroupLayout>],
     pub fragment: Option<&'a str>,
@@ -128,7 +164,7 @@ pub struct Recipe<'a> {
 }
 
 impl Recipe<'_> {
-    pub fn pipeline(
+    fn pipeline(
         &self,
         device: &Device,
         vertex: &str,
@@ -176,7 +212,7 @@ const PLACEMENT: VertexBufferLayout<'static> = VertexBufferLayout {
 };
 
 /// Three floats: the device adds a w of 1.
-pub const SURFACE: &[Option<VertexBufferLayout<'static>>] = &[
+const SURFACE: &[Option<VertexBufferLayout<'static>>] = &[
     Some(VertexBufferLayout {
         array_stride: 12,
         step_mode: VertexStepMode::Vertex,

@@ -1,6 +1,6 @@
 //! What the stage draws to.
 
-use super::MASK;
+use super::pipelines::MASK;
 use crate::Error;
 use std::sync::mpsc;
 use wgpu::util::DeviceExt;
@@ -68,28 +68,10 @@ impl Targets {
         })
     }
 
-    /// A pass that starts with a black mask, over the stencil as it is.
+    /// A pass that starts with a black mask, over depth and stencil as they are.
     pub fn begin_verdict<'e>(&self, encoder: &'e mut CommandEncoder) -> RenderPass<'e> {
         let depth_stencil =
             wgpu::RenderPassDepthStencilAttachment { view: &self.depth_stencil, depth_ops: None, stencil_ops: None };
-        self.begin_mask(encoder, depth_stencil)
-    }
-
-    /// A pass that starts with a black mask and nothing in sight.
-    pub fn begin_forward<'e>(&self, encoder: &'e mut CommandEncoder) -> RenderPass<'e> {
-        let depth_stencil = wgpu::RenderPassDepthStencilAttachment {
-            view: &self.depth_stencil,
-            depth_ops: Some(Operations { load: LoadOp::Clear(0.0), store: StoreOp::Store }),
-            stencil_ops: Some(Operations { load: LoadOp::Clear(0), store: StoreOp::Store }),
-        };
-        self.begin_mask(encoder, depth_stencil)
-    }
-
-    fn begin_mask<'e>(
-        &self,
-        encoder: &'e mut CommandEncoder,
-        depth_stencil: wgpu::RenderPassDepthStencilAttachment<'_>,
-    ) -> RenderPass<'e> {
         encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("verdict"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
