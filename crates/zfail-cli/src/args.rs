@@ -2,6 +2,7 @@
 
 use crate::names;
 use crate::numbering::Frames;
+use crate::render::OverlayArgs;
 use crate::{adapters, compare, verify};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
@@ -93,6 +94,8 @@ pub struct Render {
     /// Counts and times of this run as JSON.
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
+    #[command(flatten)]
+    pub overlays: OverlayArgs,
     #[command(flatten)]
     pub device: Device,
     #[command(flatten)]

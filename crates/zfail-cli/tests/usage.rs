@@ -68,6 +68,10 @@ fn wrong_usage_is_one_line_and_exit_code_2() {
         (&["verify", "builtin:nowher"], &["built-in scene 'nowher'", "there are: "]),
         (&["verify", "small.gltf", "--technique", "everit"], &["everit", "everitt-kilgard", "all"]),
         (&["verify", "small.gltf", "--light", "3"], &["'3'", "2 'torch'"]),
+        (&["compare", "small.gltf"], &["--output"]),
+        (&["compare", "small.gltf", "-o", "out", "--method", "heidman-two-pass"], &["heidmann-two-pass", "ray-query"]),
+        (&["compare", "small.gltf", "-o", "out", "--shadow-map", "resolutoin=4"], &["did you mean 'resolution'"]),
+        (&["compare", "small.gltf", "-o", "out", "--shadow-map", "resolution=0"], &["from 1 to 16384"]),
         (&["adapters", "--backend", "vulkn"], &["vulkan", "gl"]),
         (&["bench", "builtin:nowhere"], &["built-in scene 'nowhere'", "there are: "]),
         (&["bench", "--frames", "0"], &["--frames", "0"]),
@@ -196,7 +200,7 @@ fn help_lists_every_option_of_the_contract() {
         ]
     );
     let overview = zfail(folder.path(), &["--help"]).ok().stdout;
-    for word in ["render", "info", "bench", "verify", "adapters", "gallery"] {
+    for word in ["render", "info", "bench", "verify", "compare", "adapters", "gallery"] {
         assert!(overview.contains(word), "{overview}");
     }
     assert!(zfail(folder.path(), &["--version"]).ok().stdout.starts_with("zfail 0."));

@@ -128,7 +128,8 @@ mod tests {
             assert_eq!(pixel(&sheet, sheet.size[0] - 40, 30), right);
             assert_eq!(pixel(&sheet, 30, second_row + 10), left, "{:?}", sheet.size);
             assert_eq!(pixel(&sheet, sheet.size[0] - 40, second_row), PAPER[..3], "the sixth place is empty");
-            let letters = sheet.rgba.chunks_exact(4).filter(|p| p[..3] == WRONG[..3]).count();
+            // Orange, if thin letters leave it faint.
+            let letters = sheet.rgba.chunks_exact(4).filter(|p| p[1] > 60 && p[0] > p[2].saturating_add(40)).count();
             assert!(letters > 20, "{letters}");
         }
     }

@@ -1,13 +1,15 @@
 //! `zfail render`: one frame of a scene as files, or many.
 //!
 //! Data flow: `destinations` (where everything goes) -> `results` (a rendered frame, encoded) -> [`crate::output`].
-//! `sequence` does so for numbered frames, and `seal` tells it which of them are there already.
+//! `overlays` draws on the picture. `sequence` does so for numbered frames, and `seal` tells it which of them are there already.
 
 mod destinations;
+mod overlays;
 mod results;
 mod seal;
 mod sequence;
 
+pub use overlays::OverlayArgs;
 pub use results::picture_file;
 
 use crate::args;
@@ -16,6 +18,7 @@ use crate::error::Error;
 use crate::input;
 use crate::output::{self, Outputs};
 use destinations::Destinations;
+use overlays::Overlays;
 use results::Results;
 use zfail_render::{RenderError, Renderer, Settings};
 
@@ -24,6 +27,7 @@ use zfail_render::{RenderError, Renderer, Settings};
 /// # Errors
 /// If an argument names nothing in the scene, the scene or the device fails, or a file cannot be written.
 pub fn run(args: &args::Render) -> Result<(), Error> {
+    args.overlays.check(&args.output)?;
     match &args.sequence.frames {
         Some(frames) => sequence::run(args, frames.0.clone()),
         None => still(args),
@@ -45,9 +49,10 @@ fn still(args: &args::Render) -> Result<(), Error> {
     let progress = console::progress(4, args.verbosity.quiet || args.aovs.is_empty());
     let gpu = input::gpu(&args.device)?;
     let mut renderer = Renderer::new(&gpu, &scene).map_err(|e| failed(&e))?;
+    let mut overlays = Overlays::new(&gpu, &scene, &args.overlays, &lights, args.technique)?;
     progress.inc(1);
     progress.set_message("rendering");
-    let results = Results::new(&mut renderer, &view, &settings, &args.aovs, &progress)?;
+    let results = Results::new(&mut renderer, overlays.as_mut(), &view, &settings, &args.aovs, &progress)?;
     progress.set_message("writing");
 
     let mut outputs = Outputs::default();

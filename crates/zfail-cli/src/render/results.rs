@@ -3,6 +3,7 @@
 //! In: a renderer and a view. Out: the bytes of the picture and of the files beside it.
 
 use super::failed;
+use super::overlays::Overlays;
 use crate::args::{self, Aov, Format};
 use crate::console;
 use crate::encode;
@@ -25,12 +26,16 @@ impl Results {
     /// If the renderer or the device fails.
     pub fn new(
         renderer: &mut Renderer<'_>,
+        overlays: Option<&mut Overlays<'_>>,
         view: &View,
         settings: &Settings,
         aovs: &[Aov],
         progress: &ProgressBar,
     ) -> Result<Self, Error> {
-        let (picture, stats) = renderer.picture(view, settings).map_err(|e| failed(&e))?;
+        let (mut picture, stats) = renderer.picture(view, settings).map_err(|e| failed(&e))?;
+        if let Some(overlays) = overlays {
+            overlays.draw(renderer, view, &mut picture)?;
+        }
         progress.inc(1);
         let kinds: Vec<AovKind> = aovs.iter().map(|aov| aov.kind).collect();
         let aovs = match &kinds[..] {

@@ -4,6 +4,7 @@
 //! remembered between runs: see [`super::seal`].
 
 use super::destinations::Destinations;
+use super::overlays::Overlays;
 use super::results::{self, Results};
 use super::seal::Request;
 use super::{failed, settings};
@@ -66,13 +67,17 @@ pub fn run(args: &args::Render, numbers: Range<u32>) -> Result<(), Error> {
     }
 
     let mut renderer = Renderer::new(&gpu, &animated.scene).map_err(|e| failed(&e))?;
+    let mut overlays = Overlays::new(&gpu, &animated.scene, &args.overlays, &lights, args.technique)?;
     let progress = console::progress(missing.len(), args.verbosity.quiet);
     let mut pose = Pose::default();
     for (frame, request) in &missing {
         progress.set_message(frame.picture.display().to_string());
         animated.pose_into(animation, frame.seconds, &mut pose);
         renderer.set_pose(&pose).map_err(|e| failed(&e))?;
-        frame.render(&mut renderer, &settings, request, args)?;
+        if let Some(overlays) = &mut overlays {
+            overlays.set_pose(&pose)?;
+        }
+        frame.render(&mut renderer, overlays.as_mut(), &settings, request, args)?;
         progress.inc(1);
     }
     Ok(())
@@ -89,11 +94,12 @@ impl Frame {
     fn render(
         &self,
         renderer: &mut Renderer<'_>,
+        overlays: Option<&mut Overlays<'_>>,
         settings: &Settings,
         request: &Request,
         args: &args::Render,
     ) -> Result<(), Error> {
-        let results = Results::new(renderer, &self.view, settings, &args.aovs, &ProgressBar::hidden())?;
+        let results = Results::new(renderer, overlays, &self.view, settings, &args.aovs, &ProgressBar::hidden())?;
         let format = args.output.format;
         let (pixels, sides) = (results.pixels(format), results.sides(args)?);
         let seal = request.seal(&pixels, &sides);
