@@ -119,8 +119,8 @@ fn count_clamped(in: Clamped, @builtin(front_facing) front: bool) -> Counted {
 }
 
 struct Line {
-    @location(0) from: vec4<f32>,
-    @location(1) to: vec4<f32>,
+    @location(0) start: vec4<f32>,
+    @location(1) end: vec4<f32>,
     @location(2) color: vec4<f32>,
     // Width, opacity where hidden, dash, and whether the ends are in clip space.
     @location(3) style: vec4<f32>,
@@ -150,8 +150,8 @@ fn positive(part: vec2<f32>, a: f32, b: f32) -> vec2<f32> {
 
 @vertex
 fn stroke(line: Line, @builtin(vertex_index) index: u32) -> Stroke {
-    var a = line.from;
-    var b = line.to;
+    var a = line.start;
+    var b = line.end;
     if line.style.w == 0.0 {
         a = frame.clip_from_origin * a;
         b = frame.clip_from_origin * b;
@@ -170,10 +170,10 @@ fn stroke(line: Line, @builtin(vertex_index) index: u32) -> Stroke {
     if ends[0].w <= 0.0 || ends[1].w <= 0.0 {
         return NOWHERE;
     }
-    let from = 0.5 * frame.size * ends[0].xy / ends[0].w;
-    let to = 0.5 * frame.size * ends[1].xy / ends[1].w;
-    let length = distance(from, to);
-    let along = select(vec2<f32>(1.0, 0.0), (to - from) / length, length > 1e-6);
+    let first = 0.5 * frame.size * ends[0].xy / ends[0].w;
+    let last = 0.5 * frame.size * ends[1].xy / ends[1].w;
+    let length = distance(first, last);
+    let along = select(vec2<f32>(1.0, 0.0), (last - first) / length, length > 1e-6);
     let is_end = (index & 1u) == 1u;
     let half = 0.5 * line.style.x + 1.0;
     let across = select(-half, half, (index & 2u) != 0u);
