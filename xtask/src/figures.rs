@@ -46,7 +46,7 @@ const fn sheet(name: &'static str, size: &'static str, command: &'static str) ->
 const FIGURES: &[Figure] = &[
     picture("container", "render builtin:container"),
     verdict("container-verdict", "render builtin:container --aov shadow=."),
-    picture("container-volumes", "render builtin:container --light 0 --overlay volumes"),
+    picture("room-volumes", "render builtin:room --light 0 --overlay volumes"),
     picture("container-silhouettes", "render builtin:container --light 0 --overlay silhouettes"),
     picture("open", "render builtin:open"),
     sheet("compare-nested", SMALL, "compare builtin:nested --method heidmann-two-pass,eye-count,carmack-preload"),
@@ -61,14 +61,18 @@ const FIGURES: &[Figure] = &[
     picture("stacked-stencil", "render builtin:stacked --light 0 --overlay stencil"),
     sheet("compare-stacked", SMALL, "compare builtin:stacked --method everitt-kilgard,zfail"),
     picture("cathedral-cases", "render builtin:cathedral --camera 1 --light 0 --technique mcguire --overlay cases"),
-    picture("cathedral-pyramid", "render builtin:cathedral --light 0 --overlay pyramid"),
+    picture("container-pyramid", "render builtin:container --light 0 --overlay pyramid"),
     picture("stage-scissors", "render builtin:stage --light 0 --overlay scissors"),
     picture("cathedral-cases-auto", "render builtin:cathedral --camera 1 --light 0 --overlay cases"),
     picture("anemone-silhouettes", "render builtin:anemone --time 1 --light 0 --overlay silhouettes"),
-    picture("foliage-wireframe", "render builtin:foliage --camera 1 --overlay wireframe"),
+    picture("foliage-wireframe", "render builtin:foliage --overlay wireframe"),
     sheet("compare-all", SMALL, "compare builtin:nested"),
-    sheet("compare-shadow-map", SMALL, "compare builtin:container --method shadow-map,zfail"),
-    picture("room-volumes", "render builtin:room --overlay volumes-by-light"),
+    sheet(
+        "compare-shadow-map",
+        SMALL,
+        "compare builtin:container --method zfail,shadow-map --shadow-map resolution=256",
+    ),
+    picture("room-lights", "render builtin:room --overlay volumes-by-light"),
 ];
 
 /// Of a picture as wide as the page.
