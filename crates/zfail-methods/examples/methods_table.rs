@@ -55,7 +55,8 @@ fn row(gpu: &Gpu, name: &str, scene: &Scene, size: [u32; 2]) -> Result<String, B
         for (light, truth) in truths.iter().enumerate() {
             match methods.shadow(method, &view, light, &Options::default()) {
                 Ok(shadow) => {
-                    wrong = wrong.map(|sum| sum + truth.compare_mask(&shadow.mask).map_or(0, |r| r.wrong.len()))
+                    let report = truth.compare_mask(&shadow.mask)?;
+                    wrong = wrong.map(|sum| sum + report.wrong.len());
                 }
                 Err(Error::Unavailable(_)) => wrong = Err(()),
                 Err(error) => return Err(error.into()),
