@@ -3,6 +3,7 @@
 //!
 //! Only the standard library is used, so that the first of these commands on a new machine starts within seconds.
 
+mod browser;
 mod checks;
 mod figures;
 mod fuzz;
@@ -23,13 +24,14 @@ Commands:
   figures [NAME]
          Make the figures and the table of docs/guide anew, or those with NAME in their names
 
-The first two install a software Vulkan driver first if the machine has no graphics adapter (Debian and Ubuntu, as root).";
+The first two install a software Vulkan driver first if the machine has no graphics adapter, and test a browser if it has
+none (Debian and Ubuntu, as root).";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();
     let result = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["demo"] => setup::graphics_adapter().and_then(|()| demo()),
-        ["test"] => setup::graphics_adapter().and_then(|()| checks::run()),
+        ["test"] => setup::graphics_adapter().and_then(|()| browser::browser()).and_then(|()| checks::run()),
         ["fuzz", seconds, ref targets @ ..] => fuzz::run(seconds, targets),
         ["figures"] => figures::run(None),
         ["figures", name] => figures::run(Some(name)),

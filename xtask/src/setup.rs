@@ -81,11 +81,16 @@ fn has_loader() -> bool {
         || env::var_os("LD_LIBRARY_PATH").iter().flat_map(env::split_paths).any(|folder| is_loader(&folder))
 }
 
-fn is_root() -> bool {
+/// Whether packages can be installed.
+pub fn is_root() -> bool {
     Command::new("id").arg("-u").output().is_ok_and(|output| output.stdout.trim_ascii() == b"0")
 }
 
-fn apt_get(arguments: &[&str]) -> Result<(), String> {
+/// Runs apt-get.
+///
+/// # Errors
+/// If it fails.
+pub fn apt_get(arguments: &[&str]) -> Result<(), String> {
     let line = format!("apt-get {}", arguments.join(" "));
     println!("+ {line}");
     let status = Command::new("apt-get").env("DEBIAN_FRONTEND", "noninteractive").args(arguments).status();

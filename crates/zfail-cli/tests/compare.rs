@@ -28,13 +28,19 @@ fn hard_scenes() {
     }
     const Z_PASS: [&str; 2] = ["heidmann-two-pass", "heidmann-two-sided"];
     let cases: &[(&[&str], &[&str])] = &[
-        // The eye is in many volumes at once, some of which cut through the near rectangle: E&K section 2.2.2, and McGuire
-        // et al. section 2 on Moller & Haines.
-        (&["builtin:nested", "--light", "0"], &["heidmann-two-pass", "heidmann-two-sided", "eye-count"]),
-        // The eye is wholly in shadow, and then the number of volumes around it is all that z-pass lacks.
-        (&["builtin:cathedral", "--light", "1"], &Z_PASS),
-        // The eye is in the light: Heidmann's case.
+        // The eye is in the light: Heidmann's case, and the control of the next ones.
         (&["builtin:room", "--light", "0"], &[]),
+        // The near rectangle is in shadow (E&K section 2.2.2); as deep as the eye, which is all that Moller & Haines need.
+        (&["builtin:cathedral", "--light", "1"], &Z_PASS),
+        // Volumes cut through the near rectangle: "no uniform adjustment" (McG section 2).
+        (&["builtin:nested", "--light", "0"], &[Z_PASS[0], Z_PASS[1], "eye-count"]),
+        // The far plane cuts volumes off: "only moved the problem to the far clipping plane" (McG section 2).
+        (&["builtin:cathedral", "--light", "0", "--finite", "far=20"], &["carmack-preload", "finite-z-fail"]),
+        // 256 layers alias with none (E&K section 3.1), unless counts saturate, as Heidmann's do.
+        (
+            &["builtin:stacked", "--light", "1"],
+            &[Z_PASS[1], "eye-count", "carmack-preload", "finite-z-fail", "near-caps", "everitt-kilgard"],
+        ),
     ];
     let folder = tempfile::tempdir().unwrap();
     for (args, expected) in cases {

@@ -5,7 +5,7 @@
 use crate::error::Error;
 use crate::input::{self, Shot};
 use indicatif::ProgressBar;
-use zfail_methods::{Error as MethodError, Figures, Method, Methods, Options, ShadowMapOptions};
+use zfail_methods::{Error as MethodError, Figures, Method, Methods, Options};
 use zfail_oracle::{CastTable, Oracle, Truth};
 use zfail_render::Gpu;
 
@@ -46,7 +46,7 @@ pub struct Drawn {
 
 impl<'a> Course<'a> {
     /// Asks the oracle, a step of `progress` for each light.
-    pub fn new(gpu: &'a Gpu, shot: &'a Shot, shadow_map: ShadowMapOptions, progress: &ProgressBar) -> Self {
+    pub fn new(gpu: &'a Gpu, shot: &'a Shot, options: Options, progress: &ProgressBar) -> Self {
         progress.set_message("casting rays");
         let oracle = Oracle::new(&shot.scene);
         // Only verdicts are compared, and they do not depend on the weights.
@@ -56,7 +56,7 @@ impl<'a> Course<'a> {
             oracle.judge(&shot.view, &shot.scene.lights[light], &casts)
         };
         let truths = shot.lights.iter().map(truth).collect();
-        Self { gpu, shot, options: Options { shadow_map, ..Options::default() }, truths }
+        Self { gpu, shot, options, truths }
     }
 
     /// Runs every one of `chosen` on every light, each a step of `progress`.

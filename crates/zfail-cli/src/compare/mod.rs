@@ -23,7 +23,7 @@ use measure::Course;
 use pictures::Pictures;
 use record::Record;
 use std::path::PathBuf;
-use zfail_methods::{Method, ShadowMapOptions};
+use zfail_methods::{FiniteOptions, Method, Options, ShadowMapOptions};
 
 /// `zfail compare`
 #[derive(clap::Args, Debug)]
@@ -41,6 +41,11 @@ pub struct Args {
     #[arg(long, value_name = "NAME=VALUE,...", default_value = "", hide_default_value = true)]
     #[arg(value_parser = options::shadow_map)]
     shadow_map: ShadowMapOptions,
+    /// Where methods of a finite far plane put it, and how far those of finite volumes extrude them, in scene units: far=,
+    /// extrusion= or both. Left alone, both are far enough for all that is in the scene.
+    #[arg(long, value_name = "NAME=VALUE,...", default_value = "", hide_default_value = true)]
+    #[arg(value_parser = options::finite)]
+    finite: FiniteOptions,
     /// Print the table as JSON instead of text.
     #[arg(long)]
     json: bool,
@@ -65,12 +70,13 @@ pub fn run(args: &Args) -> Result<(), Error> {
         Method::ALL.into_iter().filter(|m| args.methods.is_empty() || args.methods.contains(m)).collect();
     let gpu = input::gpu(&args.device)?;
     let progress = console::progress(shot.lights.len() * (2 + chosen.len()), quiet);
-    let course = Course::new(&gpu, &shot, args.shadow_map, &progress);
+    let options = Options { shadow_map: args.shadow_map, finite: args.finite };
+    let course = Course::new(&gpu, &shot, options, &progress);
     let entries = course.run(&chosen, &progress)?;
     progress.set_message("composing");
     let studio = Studio::new(&gpu, &shot, &progress)?;
     let pictures = Pictures::new(&studio, &course.truths, &entries)?;
-    let record = Record::new(&args.subject, &shot, &gpu, args.shadow_map, studio.exposure, &course.truths, &entries)?;
+    let record = Record::new(&args.subject, &shot, &gpu, &options, studio.exposure, &course.truths, &entries)?;
 
     let json = console::json(&record)?;
     let mut outputs = Outputs::default();

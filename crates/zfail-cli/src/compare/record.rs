@@ -7,7 +7,7 @@ use crate::input::Shot;
 use crate::judged::JudgedLight;
 use serde::Serialize;
 use std::fmt::Write;
-use zfail_methods::{Method, ShadowMapOptions};
+use zfail_methods::{FiniteOptions, Method, Options, ShadowMapOptions};
 use zfail_oracle::Truth;
 use zfail_render::Gpu;
 
@@ -22,6 +22,7 @@ pub struct Record {
     pub backend: String,
     pub driver: String,
     pub shadow_map: ShadowMapRecord,
+    pub finite: FiniteRecord,
     /// Of the pictures, in stops.
     pub exposure: f32,
     /// Verdicts that the oracle could judge, of all lights together.
@@ -39,6 +40,15 @@ pub struct ShadowMapRecord {
     /// Texels per unit of slope.
     pub slope_bias: f32,
     pub pcf: bool,
+}
+
+/// Where things ended that the theory wants at infinity; null where the method had the choice.
+#[derive(Debug, Serialize)]
+pub struct FiniteRecord {
+    /// Distance of the far plane, scene units.
+    pub far: Option<f64>,
+    /// Length of volumes, scene units.
+    pub extrusion: Option<f64>,
 }
 
 /// One row.
@@ -85,14 +95,15 @@ impl Record {
         subject: &Subject,
         shot: &Shot,
         gpu: &Gpu,
-        shadow_map: ShadowMapOptions,
+        options: &Options,
         exposure: f32,
         truths: &[Truth],
         entries: &[Entry],
     ) -> Result<Self, Error> {
         let judged = shot.lights.iter().zip(truths).map(|(&light, truth)| JudgedLight::new(&shot.scene, light, truth));
         let lights: Vec<JudgedLight> = judged.collect::<Result<_, _>>()?;
-        let ShadowMapOptions { resolution, bias, slope_bias, pcf } = shadow_map;
+        let ShadowMapOptions { resolution, bias, slope_bias, pcf } = options.shadow_map;
+        let FiniteOptions { far, extrusion } = options.finite;
         Ok(Self {
             scene: subject.scene.scene.clone(),
             camera: shot.camera.clone(),
@@ -101,6 +112,7 @@ impl Record {
             backend: gpu.info.backend.to_string(),
             driver: [gpu.info.driver.as_str(), gpu.info.driver_info.as_str()].join(" ").trim().to_owned(),
             shadow_map: ShadowMapRecord { resolution, bias, slope_bias, pcf },
+            finite: FiniteRecord { far, extrusion },
             exposure,
             verdicts: lights.iter().map(|light| light.checked + light.background).sum(),
             lights,
@@ -214,6 +226,7 @@ pub mod tests {
             backend: "vulkan".to_owned(),
             driver: "1".to_owned(),
             shadow_map: ShadowMapRecord { resolution: 1, bias: 0.0, slope_bias: 0.0, pcf: false },
+            finite: FiniteRecord { far: None, extrusion: None },
             exposure: 0.0,
             verdicts: 8,
             lights: Vec::new(),
