@@ -74,3 +74,37 @@ pub fn worth_seeing<'p>(model: &Model, paper: &Paper<'_>, scene: impl Iterator<I
     points.extend(lights.filter(|l| l.w != 0.0).map(|l| l.truncate()).filter(|l| l.distance(center) < 2.0 * radius));
     points
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drawing::Vertex;
+    use crate::test_scene::{paper, scene, view};
+    use zfail_plan::glam::{DMat4, Vec4};
+
+    /// The greatest share by which a vertex lies outside the eye's frustum.
+    fn excess(vertices: &[Vertex], clip_from_anchored: &DMat4) -> f64 {
+        let excess = |v: &Vertex| {
+            let c = *clip_from_anchored * Vec4::from(v.position).as_dvec4();
+            let beyond = (c.x.abs() - c.w).max(c.y.abs() - c.w).max(c.z - c.w);
+            beyond / c.abs().max_element()
+        };
+        vertices.iter().map(excess).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    #[test]
+    fn nothing_remains_outside_of_the_frustum() {
+        let (view, mut model) = (view(), Model::new(&scene()).expect("a model"));
+        let drawing =
+            compose(&mut model, &mut Plans::default(), &paper(&view, &[Overlay::Alternate])).expect("a figure");
+        let clip_from_anchored = model.clip_from_anchored(&view);
+        let Surfaces::Paper(surfaces) = &drawing.surfaces else { panic!("no picture of its own") };
+        assert!(surfaces.len() > 30 && drawing.glass.len() > 30);
+        assert!(excess(surfaces, &clip_from_anchored) < 1e-5, "{}", excess(surfaces, &clip_from_anchored));
+        assert!(excess(&drawing.glass, &clip_from_anchored) < 1e-5);
+        assert!(drawing.glass.iter().any(|v| v.position[3] == 0.0), "infinity stays");
+        let whole = Plans::default().whole(&mut model, &view, &[0]).expect("volumes").triangles;
+        let unclipped: Vec<Vertex> = whole.iter().flat_map(|t| flat(t.corners, [0; 4], 1.0)).collect();
+        assert!(excess(&unclipped, &clip_from_anchored) > 0.1, "the check can fail");
+    }
+}

@@ -71,12 +71,12 @@ pub fn compose(model: &mut Model, plans: &mut Plans, paper: &Paper<'_>) -> Resul
             paper::marker(&mut drawing, &camera, boxed * at, palette::light(light), &name);
         }
     }
-    let label = |drawing: &mut Drawing, z: f64, name: &str| {
-        paper::label(drawing, &camera, DVec4::new(0.0, -1.12, z, 1.0), name);
+    // On paper, beside the edges that are nearest to the camera and farthest from it.
+    let label = |drawing: &mut Drawing, y: f64, z: f64, name: &str| {
+        paper::label(drawing, &camera, DVec4::new(0.0, y, z, 1.0), name);
     };
-    label(&mut drawing, half.z, &format!("near plane, {near:.3} m"));
-    let finite = view.is_finite();
-    label(&mut drawing, -half.z, if finite { "far plane" } else { "far plane, at infinity" });
+    label(&mut drawing, -1.15, half.z, &format!("near plane, {near:.3} m"));
+    label(&mut drawing, 1.15, -half.z, if view.is_finite() { "far plane" } else { "far plane, at infinity" });
     over_picture::volume_legend(&mut drawing, model, by_light, paper.lights);
     Ok(drawing)
 }
@@ -102,4 +102,39 @@ fn with_far_near_plane(model: &Model, view: &View) -> (View, f64) {
     let nearest = 0.98 * depths.fold(f64::INFINITY, f64::min);
     let near = if nearest.is_finite() { near.max(nearest) } else { near };
     (View { projection: Projection::Perspective { yfov, near, far }, ..*view }, near)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_scene::{paper, scene, view};
+    use crate::volumes::Part;
+    use zfail_plan::glam::Vec4;
+
+    #[test]
+    fn everything_is_in_the_box_and_dark_caps_on_its_far_side() {
+        let (view, mut model) = (view(), Model::new(&scene()).expect("a model"));
+        let paper = paper(&view, &[Overlay::ClipSpace]);
+        let drawing = compose(&mut model, &mut Plans::default(), &paper).expect("a figure");
+        let half = DVec3::new(view.aspect(), 1.0, 0.5 * DEPTH);
+        let Surfaces::Paper(surfaces) = &drawing.surfaces else { panic!("no picture of its own") };
+        let point = |position: [f32; 4]| Vec4::from(position).as_dvec4();
+        let excess = |p: DVec4| ((p.truncate() / p.w).abs() - half).max_element();
+        let worst = surfaces.iter().chain(&drawing.glass).map(|v| excess(point(v.position))).fold(-1.0, f64::max);
+        assert!(worst.abs() < 1e-4, "{worst}");
+        let [r, g, b] = palette::PARTS[Part::DarkCap as usize];
+        let cap: Vec<DVec4> =
+            drawing.glass.iter().filter(|v| v.color[..3] == [r, g, b]).map(|v| point(v.position)).collect();
+        assert!(!cap.is_empty());
+        assert!(cap.iter().all(|p| (p.z / p.w + half.z).abs() < 1e-5), "the far plane is infinity");
+        let nearest = surfaces.iter().map(|v| point(v.position)).map(|p| p.z / p.w).fold(-9.0, f64::max);
+        assert!(nearest > 0.8 * half.z, "the scene fills the box: {nearest}");
+
+        // The eye's own near plane leaves the scene at the far plane.
+        let unmoved = box_from_clip(view.aspect()) * model.clip_from_anchored(&view);
+        let corner = |p: DVec4| unmoved * p;
+        let all = clipped_scene(&model, &Region::frustum(&model.clip_from_anchored(&view)));
+        let nearest = all.iter().flat_map(|(c, _)| c.map(corner)).map(|p| p.z / p.w).fold(-9.0, f64::max);
+        assert!(nearest < -0.5 * half.z, "the check can fail: {nearest}");
+    }
 }

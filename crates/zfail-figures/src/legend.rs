@@ -45,6 +45,8 @@ impl Legend {
             if let Some(color) = color {
                 let side = (0.66 * line).round();
                 let square = [pad, top + 0.5 * (line - side), side, side].map(|x| x.round() as i32);
+                let [x, y, side, _] = square;
+                panel.fill([x - 1, y - 1, side + 2, side + 2], with_opacity(palette::LETTERS, 0.6));
                 panel.fill(square, with_opacity(*color, 1.0));
             }
             panel.write([pad + indent(*color, line), top], line, with_opacity(palette::LETTERS, 1.0), text);

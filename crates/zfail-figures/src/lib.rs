@@ -25,6 +25,8 @@ mod paper;
 mod plans;
 mod pyramid;
 mod surface_color;
+#[cfg(test)]
+mod test_scene;
 mod third_person;
 mod volumes;
 

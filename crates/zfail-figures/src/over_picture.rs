@@ -141,7 +141,7 @@ pub fn light_name(model: &Model, light: usize) -> String {
     /// Letters; names in files may be of any length.
     const MOST: usize = 24;
     let name: String = model.lights[light].name.chars().filter(|c| !c.is_control()).take(MOST).collect();
-    format!("light {light} {name}").trim_end().to_owned()
+    if name.is_empty() || name == "light" { format!("light {light}") } else { format!("light {light}, {name}") }
 }
 
 fn stencil(drawing: &mut Drawing, triangles: &[Triangle]) {

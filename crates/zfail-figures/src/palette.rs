@@ -21,7 +21,7 @@ pub const fn with_opacity([r, g, b]: [u8; 3], opacity: f32) -> Color {
 /// Sides, dark cap and light cap of a volume.
 pub const PARTS: [[u8; 3]; 3] = [SKY, VERMILION, YELLOW];
 /// Opacity of one layer of each part.
-pub const PART_OPACITY: [f32; 3] = [0.22, 0.22, 0.45];
+pub const PART_OPACITY: [f32; 3] = [0.13, 0.16, 0.4];
 
 /// McGuire's green is case 3.
 pub const CASES: [[u8; 3]; 3] = [SKY, ORANGE, GREEN];

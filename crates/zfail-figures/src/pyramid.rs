@@ -30,23 +30,17 @@ pub fn compose(model: &mut Model, plans: &mut Plans, paper: &Paper<'_>) -> Resul
     let turn = paper.view.world_from_view.matrix3;
     let camera = Camera::around(&points, -turn.z_axis, turn.y_axis, paper.from, paper.view.size);
 
-    // Rooms are looked into: what faces away is left out.
-    let faces_camera = |corners: &[zfail_plan::glam::DVec4; 3], mirrored: bool| {
-        let [a, b, c] = corners.map(|p| p.truncate());
-        ((b - a).cross(c - a).dot(camera.position - a) > 0.0) != mirrored
-    };
-    let mut surfaces = Vec::new();
+    // Translucent, so that rooms are looked into.
+    let mut drawing = Drawing::new(camera.clip_from_origin, false, Surfaces::Paper(Vec::new()));
     for (corners, i) in &scene {
-        if faces_camera(corners, model.place(*i).mirrored) {
-            let color = match case_of[*i] {
-                Some(Some(case)) => palette::CASES[case],
-                Some(None) => palette::CULLED,
-                None => [225; 3],
-            };
-            surfaces.extend(paper::shaded(*corners, color, camera.position));
-        }
+        let (hue, opacity) = match case_of[*i] {
+            Some(Some(case)) => (palette::CASES[case], 0.2),
+            Some(None) => (palette::CULLED, 0.14),
+            None => (palette::CULLED, 0.05),
+        };
+        let side = if model.place(*i).mirrored { -1.0 } else { 1.0 };
+        drawing.glass.extend(flat(*corners, with_opacity(hue, opacity), side));
     }
-    let mut drawing = Drawing::new(camera.clip_from_origin, false, Surfaces::Paper(surfaces));
     paper::frustum(&mut drawing, model, paper);
     add(&mut drawing, model, paper);
     paper::eye_and_lights(&mut drawing, model, paper, &camera, &points);
@@ -69,5 +63,31 @@ pub fn add(drawing: &mut Drawing, model: &Model, paper: &Paper<'_>) {
         drawing.line([corners[i], apex], paper.line(palette::PYRAMID, 1.0));
         drawing.line([corners[i], next], paper.line(palette::PYRAMID, 1.0));
         drawing.glass.extend(flat([corners[i], next, apex], with_opacity(palette::PYRAMID, 0.25), 1.0));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Overlay;
+    use crate::test_scene::{paper, scene, view};
+    use zfail_plan::glam::Vec4;
+
+    #[test]
+    fn the_pyramid_joins_the_near_rectangle_to_the_light() {
+        let (view, mut model) = (view(), Model::new(&scene()).expect("a model"));
+        let drawing = compose(&mut model, &mut Plans::default(), &paper(&view, &[Overlay::Pyramid])).expect("a figure");
+        let [r, g, b] = palette::PYRAMID;
+        let red: Vec<_> = drawing.lines.iter().filter(|line| line.color[..3] == [r, g, b]).collect();
+        let light = model.anchored(model.lights[0].kind.homogeneous()).as_vec4();
+        let to_light: Vec<_> = red.iter().filter(|line| Vec4::from(line.ends[1]).distance(light) < 1e-5).collect();
+        assert_eq!((red.len(), to_light.len()), (8, 4));
+        for line in to_light {
+            let c = model.clip_from_anchored(&view) * Vec4::from(line.ends[0]).as_dvec4();
+            assert!(
+                (c.x.abs() / c.w - 1.0).abs() < 1e-4 && (c.z / c.w - 1.0).abs() < 1e-4,
+                "a corner of the view: {c}"
+            );
+        }
     }
 }
