@@ -21,7 +21,6 @@ struct Comparison {
 #[derive(Deserialize)]
 struct Row {
     method: String,
-    source: String,
     result: Option<Counts>,
 }
 
@@ -47,17 +46,17 @@ fn table(comparisons: &[Comparison]) -> Result<String, Box<dyn Error>> {
     let [width, height] = first.size;
     let mut text = format!(
         "# Wrong pixels\n\nBy method and scene, all lights of the scene together, from its first camera at {width}x{height}; on {} \
-         ({}). Made by `cargo xtask figures`.\n\n| method | told in |",
+         ({}). Made by `cargo xtask figures`.\n\n| method |",
         first.adapter, first.driver
     );
-    let mut verdicts = "| *verdicts checked* | |".to_owned();
+    let mut verdicts = "| *verdicts checked* |".to_owned();
     for comparison in comparisons {
-        write!(text, " {} |", comparison.scene.trim_start_matches("builtin:"))?;
+        write!(text, " {} |", name(&comparison.scene))?;
         write!(verdicts, " {} |", comparison.verdicts)?;
     }
-    writeln!(text, "\n|---|---|{}\n{verdicts}", "---:|".repeat(comparisons.len()))?;
+    writeln!(text, "\n|---|{}\n{verdicts}", "---:|".repeat(comparisons.len()))?;
     for (i, row) in first.methods.iter().enumerate() {
-        write!(text, "| `{}` | {} |", row.method, row.source)?;
+        write!(text, "| `{}` |", row.method)?;
         for comparison in comparisons {
             let same = comparison.methods.get(i).filter(|other| other.method == row.method);
             let same = same.ok_or_else(|| format!("{} was compared by other methods", comparison.scene))?;
@@ -70,4 +69,10 @@ fn table(comparisons: &[Comparison]) -> Result<String, Box<dyn Error>> {
     }
     text.push_str("\nAn empty place: the method cannot run on this device or under this camera.\n");
     Ok(text)
+}
+
+/// A scene's name without where it is from.
+fn name(scene: &str) -> &str {
+    let file = scene.rsplit('/').next().unwrap_or(scene);
+    file.split_once('.').map_or(file, |(stem, _)| stem).trim_start_matches("builtin:")
 }
