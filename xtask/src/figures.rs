@@ -55,7 +55,7 @@ const FIGURES: &[Figure] = &[
     sheet("compare-finite", SMALL, "compare scenes/close-lamp.gltf --method finite-z-fail,everitt-kilgard"),
     picture("container-alternate", "render builtin:container --light 0 --overlay alternate"),
     picture("container-clip-space", "render builtin:container --light 0 --overlay clip-space"),
-    picture("sun-clip-space", "render builtin:sun --camera 1 --light 0 --overlay clip-space"),
+    picture("sun-clip-space", "render builtin:sun --light 0 --overlay clip-space --overlay-from=40,-25"),
     picture("ortho", "render builtin:ortho"),
     picture("stacked", "render builtin:stacked"),
     picture("stacked-stencil", "render builtin:stacked --light 0 --overlay stencil"),
