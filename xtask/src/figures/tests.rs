@@ -91,9 +91,9 @@ fn pictures_stay_small() {
     for entry in fs::read_dir(folder).unwrap() {
         let entry = entry.unwrap();
         let bytes = entry.metadata().unwrap().len();
-        assert!(bytes < 250_000, "{} has {bytes} bytes", entry.path().display());
+        assert!(bytes < 120_000, "{} has {bytes} bytes", entry.path().display());
         assert!(FIGURES.iter().any(|f| entry.path().file_stem().unwrap() == f.name), "{:?}", entry.path());
         total += bytes;
     }
-    assert!(total < 3_000_000, "{total} bytes in all");
+    assert!(total < 1_300_000, "{total} bytes in all");
 }
