@@ -26,8 +26,8 @@ enum Kind {
     Picture,
     /// The mask of the first light that `zfail render --aov shadow=.` writes.
     Verdict,
-    /// The contact sheet of `zfail compare`, of pictures this large.
-    Sheet(&'static str),
+    /// The contact sheet of `zfail compare`.
+    Sheet,
 }
 
 const fn picture(name: &'static str, command: &'static str) -> Figure {
@@ -38,8 +38,8 @@ const fn verdict(name: &'static str, command: &'static str) -> Figure {
     Figure { name, command, kind: Kind::Verdict }
 }
 
-const fn sheet(name: &'static str, size: &'static str, command: &'static str) -> Figure {
-    Figure { name, command, kind: Kind::Sheet(size) }
+const fn sheet(name: &'static str, command: &'static str) -> Figure {
+    Figure { name, command, kind: Kind::Sheet }
 }
 
 /// In the order of the guide.
@@ -49,31 +49,30 @@ const FIGURES: &[Figure] = &[
     picture("room-volumes", "render builtin:room --light 0 --overlay volumes"),
     picture("container-silhouettes", "render builtin:container --light 0 --overlay silhouettes"),
     picture("open", "render builtin:open"),
-    sheet("compare-nested", SMALL, "compare builtin:nested --method heidmann-two-pass,eye-count,carmack-preload"),
+    sheet("compare-nested", "compare builtin:nested --method heidmann-two-pass,eye-count,carmack-preload"),
     picture("jail", "render builtin:jail"),
     picture("jail-stencil", "render builtin:jail --light 0 --overlay stencil"),
-    sheet("compare-finite", SMALL, "compare scenes/close-lamp.gltf --method finite-z-fail,everitt-kilgard"),
+    sheet("compare-finite", "compare scenes/close-lamp.gltf --method finite-z-fail,everitt-kilgard"),
     picture("container-alternate", "render builtin:container --light 0 --overlay alternate"),
     picture("container-clip-space", "render builtin:container --light 0 --overlay clip-space"),
     picture("sun-clip-space", "render builtin:sun --light 0 --overlay clip-space --overlay-from=40,-25"),
     picture("ortho", "render builtin:ortho"),
     picture("stacked", "render builtin:stacked"),
     picture("stacked-stencil", "render builtin:stacked --light 0 --overlay stencil"),
-    sheet("compare-stacked", SMALL, "compare builtin:stacked --method everitt-kilgard,zfail"),
+    sheet("compare-stacked", "compare builtin:stacked --method everitt-kilgard,zfail"),
     picture("cathedral-cases", "render builtin:cathedral --camera 1 --light 0 --technique mcguire --overlay cases"),
     picture("container-pyramid", "render builtin:container --light 0 --overlay pyramid"),
     picture("stage-scissors", "render builtin:stage --light 0 --overlay scissors"),
     picture("cathedral-cases-auto", "render builtin:cathedral --camera 1 --light 0 --overlay cases"),
     picture("anemone-silhouettes", "render builtin:anemone --time 1 --light 0 --overlay silhouettes"),
     picture("foliage-wireframe", "render builtin:foliage --overlay wireframe"),
-    sheet("compare-all", SMALL, "compare builtin:nested"),
-    sheet(
-        "compare-shadow-map",
-        SMALL,
-        "compare builtin:container --method zfail,shadow-map --shadow-map resolution=256",
-    ),
+    sheet("compare-all", "compare builtin:nested"),
+    sheet("compare-shadow-map", "compare builtin:container --method zfail,shadow-map --shadow-map resolution=256"),
     picture("room-lights", "render builtin:room --overlay volumes-by-light"),
 ];
+
+/// The table's name for those who want it alone.
+const TABLE: &str = "compare-table";
 
 /// Of a picture as wide as the page.
 const PAGE: &str = "512x288";
@@ -97,19 +96,23 @@ const HARD_SCENES: [&str; 10] = [
 /// Makes the figures whose names contain `filter` (all without one), and with them the table.
 ///
 /// # Errors
-/// Names the command that failed, or the file that it did not write.
+/// Names the command that failed or the file that it did not write; says so if no name contains `filter`.
 pub fn run(filter: Option<&str>) -> Result<(), String> {
+    let wanted = |name: &str| filter.is_none_or(|part| name.contains(part));
+    if !FIGURES.iter().map(|figure| figure.name).chain([TABLE]).any(wanted) {
+        return Err(format!("no figure has '{}' in its name", filter.unwrap_or_default()));
+    }
     let program = build()?;
     let figures = guide().join("figures");
     create(&figures)?;
-    for figure in FIGURES.iter().filter(|figure| filter.is_none_or(|part| figure.name.contains(part))) {
+    for figure in FIGURES.iter().filter(|figure| wanted(figure.name)) {
         let made = figure.make(&program)?;
         example("palette", [&made])?;
         let file = figures.join(figure.name).with_extension("png");
         fs::copy(&made, &file).map_err(|e| format!("cannot write {}: {e}", file.display()))?;
         println!("{}", file.display());
     }
-    if filter.is_none_or(|part| "compare-table".contains(part)) { table(&program) } else { Ok(()) }
+    if wanted(TABLE) { table(&program) } else { Ok(()) }
 }
 
 impl Figure {
@@ -118,7 +121,7 @@ impl Figure {
         let (options, file): (&[&str], _) = match self.kind {
             Kind::Picture => (&["--size", PAGE, "--samples", "4", "-o", "picture.png"], "picture.png"),
             Kind::Verdict => (&["--size", PAGE, "-o", "picture.png"], "light-0.png"),
-            Kind::Sheet(size) => (&["--size", size, "-o", "sheet"], "sheet/contact-sheet.png"),
+            Kind::Sheet => (&["--size", SMALL, "-o", "sheet"], "sheet/contact-sheet.png"),
         };
         let folder = scratch()?;
         let words = self.command.split_whitespace().chain(options.iter().copied());

@@ -33,8 +33,8 @@ fn main() -> ExitCode {
         ["demo"] => setup::graphics_adapter().and_then(|()| demo()),
         ["test"] => setup::graphics_adapter().and_then(|()| browser::browser()).and_then(|()| checks::run()),
         ["fuzz", seconds, ref targets @ ..] => fuzz::run(seconds, targets),
-        ["figures"] => figures::run(None),
-        ["figures", name] => figures::run(Some(name)),
+        ["figures"] => setup::graphics_adapter().and_then(|()| figures::run(None)),
+        ["figures", name] => setup::graphics_adapter().and_then(|()| figures::run(Some(name))),
         ["help" | "-h" | "--help"] => {
             println!("{USAGE}");
             Ok(())
