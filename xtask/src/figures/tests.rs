@@ -1,6 +1,7 @@
 //! The guide holds together: links lead somewhere, and its figures are made by the commands beneath them.
 
 use super::{FIGURES, guide};
+use crate::root;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -61,6 +62,40 @@ fn every_link_leads_somewhere() {
     let (path, text) = &chapters[0];
     assert!(fault(path, text, "../../crates/nothing.rs").is_some());
     assert!(fault(path, text, "#no-such-heading").is_some());
+}
+
+/// Paths of the repository's sources, with slashes.
+fn sources(folder: &Path, found: &mut Vec<String>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            sources(&path, found);
+        } else if is_source(&path.to_string_lossy()) {
+            found.push(path.to_string_lossy().replace('\\', "/"));
+        }
+    }
+}
+
+fn is_source(name: &str) -> bool {
+    name.ends_with(".rs") || name.ends_with(".wgsl")
+}
+
+#[test]
+fn every_module_named_is_there() {
+    let mut found = Vec::new();
+    for folder in ["crates", "examples"] {
+        sources(&root().join(folder), &mut found);
+    }
+    let exists = |name: &str| found.iter().any(|path| path.ends_with(&format!("/{name}")));
+    let mut named = 0;
+    for (path, text) in chapters() {
+        for name in text.split('`').skip(1).step_by(2).filter(|name| is_source(name)) {
+            assert!(exists(name), "{}: there is no {name}", path.display());
+            named += 1;
+        }
+    }
+    assert!(named > 50, "{named} modules are named");
+    assert!(!exists("no_such_module.rs"));
 }
 
 /// Words, so that a line break in a command does not matter.
