@@ -1,4 +1,5 @@
-//! Prints how many pixels every method gets wrong on every built-in scene: `[WIDTHxHEIGHT] [SCENE...]`.
+//! Prints how many pixels every method gets wrong: `[WIDTHxHEIGHT] [SCENE...]`, where a scene is the name of a built-in one or a
+//! file; all built-in ones if there is none.
 
 use std::process::ExitCode;
 use zfail_methods::{Error, Method, Methods, Options};
@@ -34,7 +35,11 @@ fn table(names: &[String], size: [u32; 2]) -> Result<(), Box<dyn std::error::Err
     println!("| scene | pixels |{}", Method::ALL.map(|method| format!(" {method} |")).concat());
     println!("|{}", "---|".repeat(Method::ALL.len() + 2));
     for name in names {
-        let mut scene = builtin::scene(name).ok_or_else(|| format!("there is no built-in scene {name}"))?;
+        let mut scene = match builtin::scene(name) {
+            Some(scene) => scene,
+            None => zfail_scene::load(name.as_ref())?,
+        };
+        zfail_scene::complete(&mut scene);
         cut_masked(&mut scene, 1.0, Limits::default());
         println!("{}", row(&gpu, name, &scene, size)?);
     }

@@ -1,9 +1,9 @@
-//! z-pass or z-fail by light: Lengyel, "The Mechanics of Robust Stencil Shadows", Gamasutra, 2002; McG section 2.
+//! z-pass or z-fail by light: Lengyel, "The Mechanics of Robust Stencil Shadows", Gamasutra, 2002; McG section 3.
 //!
-//! "A hybrid algorithm ... that uses faster z-pass rendering when the viewport is not shadowed and reverts to robust
-//! z-fail rendering when the viewport is shadowed", with "a rectangular clipping region ... computed [from] the projected
-//! image plane bounding box of a 3D sphere of this radius" around a light that ends somewhere (McG). The test is Everitt
-//! & Kilgard's (3.4): does anything come between the light and the near rectangle?
+//! It "uses faster z-pass rendering when the viewport is not shadowed and reverts to robust z-fail rendering when the
+//! viewport is shadowed", and for a light that ends somewhere "computes the projected image plane bounding box of a 3D
+//! sphere of this radius and sets the OpenGL scissor region to that bounding box" (McG). Whether the viewport is shadowed is
+//! asked of each light once: does any of its casters come between it and the near rectangle? (E&K 3.4 suggests that.)
 
 use zfail_plan::plan::{Measures, Silhouettes, Tiles, ZPass};
 

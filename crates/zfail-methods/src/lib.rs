@@ -12,26 +12,38 @@
 //! Robust Shadows", 2003.
 
 // The methods, in the order of history.
+
+// Counting in front of the visible surface.
 mod heidmann;
 
+// From the eye's own shadow on.
 mod eye_count;
 
+// From what the near plane cuts off.
 mod carmack_preload;
 
+// Behind the visible surface.
 mod zfail_finite;
 
+// With the cut closed.
 mod near_caps;
 
+// To infinity.
 mod everitt_kilgard;
 
+// In front or behind, by light.
 mod lengyel;
 
+// By caster.
 mod mcguire;
 
+// And with less to draw.
 mod ours;
 
+// Without volumes: what the light sees.
 mod shadow_map;
 
+// Without volumes: what a ray meets.
 mod ray_query;
 
 // What they share.

@@ -1,6 +1,6 @@
 //! z-pass or z-fail by caster: McGuire, Hughes, Egan, Kilgard & Everitt, "Fast, Practical and Robust Shadows", 2003.
 //!
-//! Of every caster by itself it is asked whether it comes between the light and the near rectangle (section 5, the
+//! Of every caster by itself it is asked whether it comes between the light and the near rectangle (section 6, the
 //! occlusion pyramid); where it does not, its sides alone are counted by z-pass (section 7, case 1). Of those that need
 //! z-fail, parts out of view are left out: the light cap (case 2 instead of 3), the dark cap. And a dark cap at infinity
 //! has no shape, only a border, so a fan over the silhouette does: O(s) triangles instead of O(f) (section 6,

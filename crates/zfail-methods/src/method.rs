@@ -93,15 +93,15 @@ impl Method {
         match self {
             Self::HeidmannTwoPass => "Heidmann 1991; Everitt & Kilgard 2002, section 2.2.1",
             Self::HeidmannTwoSided => "Heidmann 1991; Everitt & Kilgard 2002, sections 4.1 and 4.3",
-            Self::EyeCount => "Moller & Haines 1999; McGuire et al. 2003, section 2",
+            Self::EyeCount => "Moller & Haines 1999; McGuire et al. 2003, section 3",
             Self::CarmackPreload => "Carmack's letter, May 2000: \"preload\"",
             Self::FiniteZFail => "Bilodeau & Songy 1999; Carmack 2000; Everitt & Kilgard 2002, section 2.2.3",
             Self::NearCaps => "Diefenbach 1996; Kilgard 2001; Everitt & Kilgard 2002, section 2.2.2",
             Self::EverittKilgard => "Everitt & Kilgard 2002, section 3",
-            Self::Lengyel => "Lengyel 2002; McGuire et al. 2003, section 2",
-            Self::Mcguire => "McGuire et al. 2003, sections 5 to 7",
+            Self::Lengyel => "Lengyel 2002; McGuire et al. 2003, section 3",
+            Self::Mcguire => "McGuire et al. 2003, sections 6 and 7",
             Self::Zfail => "this library's ARCHITECTURE.md",
-            Self::ShadowMap => "Williams 1978; Carmack's letter, last paragraphs; McGuire et al. 2003, section 2",
+            Self::ShadowMap => "Williams 1978; Carmack's letter, last paragraphs; McGuire et al. 2003, section 3",
             Self::RayQuery => "Vulkan's VK_KHR_ray_query, 2020",
         }
     }

@@ -61,11 +61,18 @@ impl<'g> Methods<'g> {
     /// # Errors
     /// What it lacks.
     pub fn availability(&self, method: Method) -> Result<(), Unavailable> {
-        if method != Method::RayQuery {
-            return Ok(());
+        let unavailable = |reason: &str| Err(Unavailable { method, reason: reason.to_owned() });
+        match method {
+            // Depth textures are incomplete there without a sampler of their own.
+            Method::ShadowMap if self.gpu.info.backend == wgpu::Backend::Gl => {
+                unavailable("wgpu's GL backend reads nothing from depth textures")
+            }
+            Method::RayQuery => {
+                let rays = self.rays.get_or_init(|| RayTracer::new(&self.gpu.info, &self.geometry));
+                rays.as_ref().map_or_else(|reason| unavailable(reason), |_| Ok(()))
+            }
+            _ => Ok(()),
         }
-        let rays = self.rays.get_or_init(|| RayTracer::new(&self.gpu.info, &self.geometry));
-        rays.as_ref().map(|_| ()).map_err(|reason| Unavailable { method, reason: reason.clone() })
     }
 
     fn verdict(
@@ -92,8 +99,7 @@ impl<'g> Methods<'g> {
         }
         let start = Instant::now();
         let procedure = procedure(method, geometry, view, light, options)?;
-        let planning_ms = start.elapsed().as_secs_f64() * 1e3;
-        stage.carry_out(gpu, geometry, &procedure, planning_ms)
+        stage.carry_out(gpu, geometry, &procedure, start)
     }
 
     /// Fills `reach`; fails if there is no such light.

@@ -1,7 +1,7 @@
 //! Methods that choose what to draw: carried out by the library itself, of which this is a small host.
 //!
 //! In: the steps to take ([`Measures`]). Out: the mask and figures. The stage has the depth pass and the verdict, and
-//! [`zfail::Shadows`] counts in between; the instrumented run draws what its plan draws.
+//! [`Shadows`] counts in between; the instrumented run draws what its plan draws.
 
 use crate::geometry::{Geometry, Mesh};
 use crate::stage::{self, Stage};

@@ -26,7 +26,8 @@ pub struct Figures {
     /// Times that geometry or the image is drawn over: the depth pass, each pass over the volumes or each face of a
     /// shadow map, and what reads the verdict.
     pub passes: u32,
-    /// CPU time of silhouettes, caps and all else before the device has work, milliseconds.
+    /// Wall time until the device has its lists: silhouettes, caps, culling and upload; for ray queries, the tree over all
+    /// instances. Milliseconds. Nothing is kept from one call to the next.
     pub planning_ms: f64,
     /// Wall time of a plain run, from a device that is idle to one that is idle again, milliseconds; the median of three.
     pub render_ms: f64,

@@ -1,4 +1,4 @@
-//! A depth map seen from the light: Williams, "Casting Curved Shadows on Curved Surfaces", 1978; McG section 2.
+//! A depth map seen from the light: Williams, "Casting Curved Shadows on Curved Surfaces", 1978; McG section 3.
 //!
 //! The scene is drawn from the light, and a surface is in shadow if the map has something nearer in its direction. "Not
 //! much in the way of coding subtleties required. The performance is more level ... Unfortunately, the quality just isn't
@@ -236,7 +236,7 @@ fn lookup(gpu: &Gpu, uniform: &MapUniform, maps: &TextureView) -> Surfaces {
         min_binding_size: None,
     };
     let texture = wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Depth,
+        sample_type: wgpu::TextureSampleType::Float { filterable: false },
         view_dimension: wgpu::TextureViewDimension::D2Array,
         multisampled: false,
     };

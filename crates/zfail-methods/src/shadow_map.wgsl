@@ -21,11 +21,12 @@ struct Map {
 }
 
 @group(0) @binding(0) var<uniform> map: Map;
-@group(0) @binding(1) var depths: texture_depth_2d_array;
+// Depth, bound as floats because not every backend loads from depth textures.
+@group(0) @binding(1) var depths: texture_2d_array<f32>;
 
 // The distance of what a face's texel sees, along the face's axis.
 fn seen(at: vec2<i32>, face: u32) -> f32 {
-    let depth = textureLoad(depths, clamp(at, vec2<i32>(0), vec2<i32>(i32(map.resolution) - 1)), face, 0);
+    let depth = textureLoad(depths, clamp(at, vec2<i32>(0), vec2<i32>(i32(map.resolution) - 1)), face, 0).r;
     if map.light.w == 0.0 {
         return (1.0 - depth) * map.range;
     }

@@ -8,7 +8,7 @@
 //! Two things go wrong. "When a light source is arbitrarily close to a single occluder polygon, any finite distance ...
 //! may not extend far enough" (E&K 2.2.3): both ends of a side go the same distance in directions far apart, and the cap
 //! between them sags towards the light. And reversing the count "only moved the problem to the far clipping plane" (McG
-//! section 2): what that cuts off of a volume is missing from the count.
+//! section 3): what that cuts off of a volume is missing from the count.
 
 use crate::geometry::Geometry;
 use crate::procedure::{Pass, Procedure};

@@ -31,7 +31,7 @@ fn z_pass_is_right_unless_the_near_rectangle_is_in_shadow() {
     let mut inside = Case::builtin(&gpu, "cathedral", 1);
     assert!(heidmann.map(|method| inside.wrong(method)).into_iter().all(|wrong| wrong > 4000));
     exact_where_others_fail(&mut inside, &heidmann);
-    // McG section 2 on Moller & Haines: right while all of the rectangle is as deep in shadow as the eye.
+    // McG section 3 on Moller & Haines: right while all of the rectangle is as deep in shadow as the eye.
     assert_eq!(inside.wrong(Method::EyeCount), 0);
     // C: "That works all the time."
     assert_eq!(inside.wrong(Method::CarmackPreload), 0);
@@ -40,7 +40,7 @@ fn z_pass_is_right_unless_the_near_rectangle_is_in_shadow() {
     assert_eq!(inside.wrong(Method::EverittKilgard), 0);
 }
 
-/// McG section 2: "If a shadow volume crosses partway through the viewport, no uniform adjustment of stencil values will
+/// McG section 3: "If a shadow volume crosses partway through the viewport, no uniform adjustment of stencil values will
 /// give correct results". C: "a non-zero near clip plane will give situations where the plane is not cleanly on one side".
 #[test]
 fn the_eyes_own_shadow_is_not_that_of_the_near_rectangle() {
@@ -52,7 +52,7 @@ fn the_eyes_own_shadow_is_not_that_of_the_near_rectangle() {
     }
 }
 
-/// McG section 2: "Reversing the count direction only moved the problem to the far clipping plane". C: "making sure that none
+/// McG section 3: "Reversing the count direction only moved the problem to the far clipping plane". C: "making sure that none
 /// of the shadow volumes get clipped off by your far clipping plane (which would unbalance the count)".
 #[test]
 fn a_far_plane_cuts_volumes_open() {

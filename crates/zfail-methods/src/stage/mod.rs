@@ -53,16 +53,17 @@ impl Stage {
         Self { pipelines: Pipelines::new(&gpu.device, gpu.depth_stencil), targets: None }
     }
 
-    /// Carries out `procedure`, for the figures of which planning took `planning_ms`.
+    /// Carries out `procedure`, to make which took since `start`.
     pub fn carry_out(
         &mut self,
         gpu: &Gpu,
         geometry: &Geometry,
         procedure: &Procedure,
-        planning_ms: f64,
+        start: Instant,
     ) -> Result<(Vec<u8>, Figures), Error> {
         let lists: Vec<Uploaded<'_>> = procedure.lists.iter().map(|list| upload(&gpu.device, list)).collect();
         let placements = placements(&gpu.device, &geometry.placements(&procedure.view));
+        let planning_ms = start.elapsed().as_secs_f64() * 1e3;
         let passes: Vec<Ready<'_>> =
             procedure.passes.iter().map(|pass| self.ready(gpu, &lists, *pass, false)).collect();
         let ledge = if procedure.ledge { LEDGE } else { 0.0 };
@@ -283,4 +284,27 @@ fn verdict(encoder: &mut CommandEncoder, targets: &Targets, pipelines: &Pipeline
     pass.set_stencil_reference(0);
     pass.set_pipeline(&pipelines.verdict);
     pass.draw(0..3, 0..1);
+}
+
+#[cfg(test)]
+mod tests {
+    fn validate(source: &str) -> Result<(), String> {
+        let module = naga::front::wgsl::parse_str(source).map_err(|e| e.emit_to_string(source))?;
+        let mut validator =
+            naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::all());
+        validator.validate(&module).map(drop).map_err(|e| e.emit_to_string(source))
+    }
+
+    /// Also those that few devices can run.
+    #[test]
+    fn every_program_is_valid() {
+        let rays = ["enable wgpu_ray_query;\n", SURFACE, include_str!("../ray_query/ray_query.wgsl")].concat();
+        let map = [SURFACE, include_str!("../shadow_map.wgsl")].concat();
+        for source in [include_str!("stage.wgsl"), &map, &rays] {
+            validate(source).unwrap_or_else(|message| panic!("{message}"));
+            assert!(validate(&format!("{source}fn wrong() -> f32 {{ return 1u; }}")).is_err());
+        }
+    }
+
+    const SURFACE: &str = include_str!("surface.wgsl");
 }
