@@ -30,6 +30,7 @@ impl Cli {
 
 /// The commands.
 #[derive(Debug, Subcommand)]
+#[allow(clippy::large_enum_variant, reason = "there is one of them")]
 pub enum Command {
     /// Render a scene to a picture, headless.
     Render(Render),

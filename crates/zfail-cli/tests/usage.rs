@@ -197,6 +197,8 @@ fn help_lists_every_option_of_the_contract() {
             "--alpha-shadows <off|solid|cut=PIXELS>",
             "--blended-shadows",
             "--variant <NAME|N>",
+            "--overlay <KIND>",
+            "--overlay-from <YAW,PITCH[,ZOOM]>",
         ]
     );
     let overview = zfail(folder.path(), &["--help"]).ok().stdout;

@@ -29,14 +29,14 @@ pub fn compose(model: &mut Model, plans: &mut Plans, paper: &Paper<'_>) -> Resul
     let mut polygon = Vec::new();
     for triangle in &whole.triangles {
         region.triangle(triangle.corners, &mut polygon);
-        let (hue, opacity) = over_picture::glass_color(triangle, by_light, paper.lights);
+        let (hue, opacity) = over_picture::glass_color(model, triangle, by_light, paper.lights);
         for corners in fan(&polygon) {
             drawing.glass.extend(flat(corners, with_opacity(hue, 0.6 * opacity), triangle.winding.into()));
         }
     }
     for (light, edge) in &whole.silhouettes {
         if let Some(edge) = region.segment(*edge) {
-            let hue = if by_light { palette::light(paper.lights[*light]) } else { palette::INK };
+            let hue = if by_light { model.hues[paper.lights[*light]] } else { palette::INK };
             drawing.line(edge, paper.line(hue, 0.7));
         }
     }
@@ -65,13 +65,28 @@ pub fn clipped_scene(model: &Model, region: &Region) -> Vec<([DVec4; 3], [u8; 3]
     scene
 }
 
-/// Points that the image has to show: those of the scene, the eye, and lights that are not too far away.
+/// Points that the image has to show: those of the scene, the eye, and lights that are not too far away or the arrows that
+/// stand for them.
 pub fn worth_seeing<'p>(model: &Model, paper: &Paper<'_>, scene: impl Iterator<Item = &'p DVec4>) -> Vec<DVec3> {
+    let eye = model.anchored(paper.view.eye().extend(1.0)).truncate();
     let mut points: Vec<DVec3> = scene.map(|p| p.truncate() / p.w).collect();
-    points.push(model.anchored(paper.view.eye().extend(1.0)).truncate());
+    // The far ends of a plain that everything stands on would make all else small.
+    let mut distances: Vec<f64> = points.iter().map(|p| p.distance(eye)).collect();
+    if !distances.is_empty() {
+        let most = distances.len() * 9 / 10;
+        let (_, &mut usual, _) = distances.select_nth_unstable_by(most, f64::total_cmp);
+        points.retain(|p| p.distance(eye) <= 1.5 * usual);
+    }
+    points.push(eye);
     let (center, radius) = paper::ball(&points);
-    let lights = paper.lights.iter().map(|&l| model.anchored(model.lights[l].kind.homogeneous()));
-    points.extend(lights.filter(|l| l.w != 0.0).map(|l| l.truncate()).filter(|l| l.distance(center) < 2.0 * radius));
+    for light in paper.lights.iter().map(|&l| model.anchored(model.lights[l].kind.homogeneous())) {
+        let at = light.truncate();
+        if light.w == 0.0 {
+            points.push(center + at.normalize_or_zero() * radius);
+        } else if at.distance(center) < 2.0 * radius {
+            points.push(at);
+        }
+    }
     points
 }
 

@@ -45,7 +45,7 @@ pub fn compose(model: &mut Model, plans: &mut Plans, paper: &Paper<'_>) -> Resul
     let mut polygon = Vec::new();
     for triangle in &whole.triangles {
         region.triangle(triangle.corners, &mut polygon);
-        let (hue, opacity) = over_picture::glass_color(triangle, by_light, paper.lights);
+        let (hue, opacity) = over_picture::glass_color(model, triangle, by_light, paper.lights);
         for corners in fan(&polygon) {
             let corners = corners.map(|p| boxed * p);
             drawing.glass.extend(flat(corners, with_opacity(hue, 0.6 * opacity), triangle.winding.into()));
@@ -53,7 +53,7 @@ pub fn compose(model: &mut Model, plans: &mut Plans, paper: &Paper<'_>) -> Resul
     }
     for (light, edge) in &whole.silhouettes {
         if let Some(edge) = region.segment(*edge) {
-            let hue = if by_light { palette::light(paper.lights[*light]) } else { palette::INK };
+            let hue = if by_light { model.hues[paper.lights[*light]] } else { palette::INK };
             drawing.line(edge.map(|p| boxed * p), paper.line(hue, 0.7));
         }
     }
@@ -68,7 +68,7 @@ pub fn compose(model: &mut Model, plans: &mut Plans, paper: &Paper<'_>) -> Resul
         let at = model.anchored(model.lights[light].kind.homogeneous());
         if region.contains(at) {
             let name = over_picture::light_name(model, light);
-            paper::marker(&mut drawing, &camera, boxed * at, palette::light(light), &name);
+            paper::marker(&mut drawing, &camera, boxed * at, model.hues[light], &name);
         }
     }
     // On paper, beside the edges that are nearest to the camera and farthest from it.

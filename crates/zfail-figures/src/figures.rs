@@ -71,7 +71,7 @@ impl<'g> Figures<'g> {
 
     /// Replaces the lights, of which there may be more or fewer than before.
     pub fn set_lights(&mut self, lights: &[Light]) {
-        self.model.lights = lights.to_vec();
+        self.model.set_lights(lights);
         self.last = None;
     }
 

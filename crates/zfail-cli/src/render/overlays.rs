@@ -114,11 +114,12 @@ fn parse_from(text: &str) -> Result<ThirdPerson, String> {
 #[cfg(test)]
 mod tests {
     use super::parse_from;
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
     #[test]
     fn places_to_look_from() {
         let from = parse_from("-90,45,2").unwrap();
-        assert!((from.yaw + 1.5708).abs() < 1e-4 && (from.pitch - 0.7854).abs() < 1e-4 && from.zoom == 2.0);
+        assert!((from.yaw + FRAC_PI_2).abs() < 1e-9 && (from.pitch - FRAC_PI_4).abs() < 1e-9 && from.zoom == 2.0);
         assert_eq!(parse_from("10,20").unwrap().zoom, 1.0);
         for wrong in ["", "1", "1,2,3,4", "a,b", "nan,0", "0,89", "0,0,0", "361,0"] {
             assert!(parse_from(wrong).is_err(), "{wrong}");

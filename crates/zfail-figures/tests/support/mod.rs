@@ -1,4 +1,5 @@
 //! A scene of a floor and cubes, rays through it that know nothing of shadow volumes, and figures of it as pixels.
+#![allow(dead_code, reason = "each test file uses a part of this")]
 
 use std::env;
 use zfail_figures::{Figures, Options, Overlay};
