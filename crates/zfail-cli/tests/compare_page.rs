@@ -78,6 +78,12 @@ fn in_path(program: &str) -> Option<PathBuf> {
     env::split_paths(&folders).map(|folder| folder.join(program)).find(|path| path.is_file())
 }
 
+/// What is changed in a page, and what has to be found then.
+struct Fault<'a> {
+    changes: Vec<(&'a str, &'a str)>,
+    found: &'a [&'a str],
+}
+
 #[test]
 fn the_page_works_in_a_browser() {
     if !has_gpu() {
@@ -89,9 +95,8 @@ fn the_page_works_in_a_browser() {
         Err(why) => return eprintln!("skipped: {why}"),
     };
     let folder = tempfile::tempdir().unwrap();
-    let (scene, size) = (env::var("ZFAIL_PAGE_SCENE"), env::var("ZFAIL_PAGE_SIZE"));
-    let (scene, size) = (scene.as_deref().unwrap_or("builtin:nested"), size.as_deref().unwrap_or("96x64"));
-    zfail(folder.path(), &["compare", scene, "-o", "out", "--size", size, "--light", "0", "-q"]).ok();
+    let args = ["compare", "builtin:nested", "-o", "out", "--size", "96x64", "--light", "0", "-q"];
+    zfail(folder.path(), &args).ok();
     let out = folder.path().join("out");
     let (page, record) = (out.join("index.html"), out.join("compare.json"));
     let text = fs::read_to_string(&page).unwrap();
@@ -102,34 +107,34 @@ fn the_page_works_in_a_browser() {
         text[start..start + text[start..].find("</tr>").unwrap() + 5].to_owned()
     };
     let first_row = row(&text);
-    let faults: [(&[&str], Vec<(&str, &str)>); 2] = [
-        (
-            &[
+    let faults = [
+        Fault {
+            found: &[
                 "images: picture-truth is 0,0",
                 "table: no row of heidmann-two-pass",
                 "table: the row of heidmann-two-sided says 9",
                 "request: http://127.0.0.1:9/",
                 "slider: moving the divider changes nothing",
             ],
-            vec![
+            changes: vec![
                 ("base64,iVBOR", "base64,AAAAA"),
                 (&first_row, ""),
                 ("data-label=\"Wrong pixels\">", "data-label=\"Wrong pixels\">9"),
                 ("<h1>", "<img src=\"http://127.0.0.1:9/\" alt=\"\"><h1>"),
                 ("addEventListener(\"input\", move)", "addEventListener(\"inptu\", move)"),
             ],
-        ),
-        (
-            &["script: ", "keyboard: Tab does not lead", "phone: at 360"],
-            vec![
+        },
+        Fault {
+            found: &["script: ", "keyboard: Tab does not lead", "phone: at 360"],
+            changes: vec![
                 ("\"use strict\";", "\"use strict\"; missing();"),
                 (".scroll { overflow-x: auto; }", "table { min-width: 50rem; }"),
             ],
-        ),
+        },
     ];
     let mut pages = Vec::new();
-    for (i, (_, changes)) in faults.iter().enumerate() {
-        let broken = changes.iter().fold(text.clone(), |text, (from, to)| {
+    for (i, fault) in faults.iter().enumerate() {
+        let broken = fault.changes.iter().fold(text.clone(), |text, (from, to)| {
             assert!(text.contains(from), "{from}");
             text.replacen(from, to, 1)
         });
@@ -138,8 +143,8 @@ fn the_page_works_in_a_browser() {
     }
     pages.push(page);
     let found = driver.examine(&record, &pages.iter().map(PathBuf::as_path).collect::<Vec<_>>());
-    for ((words, _), found) in faults.iter().zip(&found) {
-        for word in *words {
+    for (fault, found) in faults.iter().zip(&found) {
+        for word in fault.found {
             assert!(found.iter().any(|problem| problem.contains(word)), "'{word}' is not in {found:#?}");
         }
     }
