@@ -53,6 +53,7 @@ const FIGURES: &[Figure] = &[
     picture("jail", "render builtin:jail"),
     picture("jail-stencil", "render builtin:jail --light 0 --overlay stencil"),
     sheet("compare-finite", "compare scenes/close-lamp.gltf --method finite-z-fail,everitt-kilgard"),
+    sheet("compare-far-plane", "compare builtin:room --light 0 --method finite-z-fail,everitt-kilgard --finite far=16"),
     picture("container-alternate", "render builtin:container --light 0 --overlay alternate"),
     picture("container-clip-space", "render builtin:container --light 0 --overlay clip-space"),
     picture("sun-clip-space", "render builtin:sun --light 0 --overlay clip-space --overlay-from=40,-25"),
