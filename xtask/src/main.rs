@@ -1,9 +1,11 @@
-//! Set-up, demo and tests: `cargo xtask demo` and `cargo xtask test`; and fuzzing, `cargo xtask fuzz`.
+//! Set-up, demo and tests: `cargo xtask demo` and `cargo xtask test`; fuzzing, `cargo xtask fuzz`; the guide's figures,
+//! `cargo xtask figures`.
 //!
 //! Only the standard library is used, so that the first of these commands on a new machine starts within seconds.
 
 mod browser;
 mod checks;
+mod figures;
 mod fuzz;
 mod setup;
 
@@ -19,6 +21,8 @@ Commands:
   test   Run every check: format, lints, documentation, tests, benches in test mode
   fuzz SECONDS [TARGET...]
          Fuzz the loaders, each target for so long; needs a C++ compiler
+  figures [NAME]
+         Make the figures and the table of docs/guide anew, or those with NAME in their names
 
 The first two install a software Vulkan driver first if the machine has no graphics adapter; 'test' also a virtual display
 and a browser, for the tests of the viewer and of pages (Debian and Ubuntu, as root).";
@@ -32,6 +36,8 @@ fn main() -> ExitCode {
             .and_then(|()| browser::browser())
             .and_then(|()| checks::run()),
         ["fuzz", seconds, ref targets @ ..] => fuzz::run(seconds, targets),
+        ["figures"] => setup::graphics_adapter().and_then(|()| figures::run(None)),
+        ["figures", name] => setup::graphics_adapter().and_then(|()| figures::run(Some(name))),
         ["help" | "-h" | "--help"] => {
             println!("{USAGE}");
             Ok(())
