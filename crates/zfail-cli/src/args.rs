@@ -39,7 +39,7 @@ impl Cli {
 #[allow(clippy::large_enum_variant, reason = "there is one of them")]
 pub enum Command {
     /// Render a scene to a picture, headless.
-    Render(Render),
+    Render(Box<Render>),
     /// Show what is in a scene: meshes and how closed they are, lights, cameras, what is not supported.
     Info(Info),
     /// Measure what frames cost, by technique, with shadows and without.

@@ -4,7 +4,7 @@ mod support;
 
 use support::{add, gpu, light, look, matt, square, sun, wall};
 use zfail_render::zfail_plan::glam::{DAffine3, DVec3};
-use zfail_render::zfail_plan::scene::{Image, LightKind, LightShape, Scene, Texture};
+use zfail_render::zfail_plan::scene::{Filter, Image, Light, LightKind, LightShape, Scene, Texture, Wrap};
 use zfail_render::zfail_plan::view::View;
 use zfail_render::{Gpu, Renderer, Settings};
 
@@ -15,14 +15,15 @@ fn scene() -> Scene {
         add(&mut scene, square(0.5), matt([0.9, 0.4, 0.2]), DAffine3::from_translation(DVec3::new(x, 0.0, 1.0)));
     }
     scene.instances[3].casts_shadow = false;
-    scene.images.push(Image { width: 2, height: 1, rgba: vec![255, 0, 0, 255, 0, 255, 255, 255] });
-    scene.textures.push(Texture { image: 0, ..Texture::default() });
+    scene.images.push(Image { name: String::new(), width: 2, height: 1, rgba: vec![255, 0, 0, 255, 0, 255, 255, 255] });
+    let (wrap, filter) = (Wrap::Clamp, Filter::Linear);
+    scene.textures.push(Texture { image: 0, wrap_u: wrap, wrap_v: wrap, mag: filter, min: filter, mipmaps: true });
     scene.ambient = [0.05; 3];
     scene.lights = vec![sun(DVec3::new(0.4, -0.3, -1.0), 2.0), lamp(DVec3::new(0.5, 1.0, 3.0))];
     scene
 }
 
-fn lamp(position: DVec3) -> zfail_render::zfail_plan::scene::Light {
+fn lamp(position: DVec3) -> Light {
     light(LightKind::Point { position, range: f64::INFINITY }, 12.0)
 }
 
@@ -35,10 +36,13 @@ fn fresh(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Vec<u8> {
     renderer.picture(&view(), settings).expect("a picture").0.rgba8
 }
 
+/// Changes a scene.
+type Edit = fn(&mut Scene);
+
 #[test]
 fn every_edit_gives_the_picture_of_a_scene_that_was_always_so() {
     let Some(gpu) = gpu() else { return };
-    let edits: [(&str, fn(&mut Scene)); 8] = [
+    let edits: [(&str, Edit); 8] = [
         ("recoloured", |s| s.lights[0].color = [0.2, 0.9, 0.4]),
         ("moved", |s| s.lights[1].kind = lamp(DVec3::new(-1.0, 0.4, 2.0)).kind),
         ("added", |s| s.lights.push(lamp(DVec3::new(2.0, -1.0, 4.0)))),

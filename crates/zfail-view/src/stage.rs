@@ -4,7 +4,7 @@
 //! are those of `zfail render`.
 
 use crate::pace::Pace;
-use crate::session::Session;
+use crate::session::{Look, Session};
 use std::time::{Duration, Instant};
 use zfail_figures::{Figures, Options};
 use zfail_plan::view::View;
@@ -88,16 +88,18 @@ impl<'g> Stage<'g> {
     ///
     /// # Errors
     /// As [`Self::draw`].
-    pub fn still(&mut self, size: [u32; 2]) -> Result<Vec<u8>, StageError> {
-        // The targets are others afterwards.
-        self.session.touch();
-        self.upload()?;
+    pub fn still(&self, size: [u32; 2]) -> Result<Vec<u8>, StageError> {
+        let Session { scene, look, .. } = &self.session;
         let view = self.session.view(size);
-        let picture = self.renderer.picture(&view, &self.session.look.settings.clone().repeatable())?.0;
-        self.annotate(&view)?;
-        match self.renderer.shown().filter(|_| !self.session.look.overlays.is_empty()) {
-            Some(annotated) => Ok(self.gpu.read_texture(annotated)?),
+        // A renderer's plans remember earlier frames, which may round a silhouette otherwise.
+        let mut renderer = Renderer::new(self.gpu, scene)?;
+        let picture = renderer.picture(&view, &look.settings.clone().repeatable())?.0;
+        match renderer.shown().filter(|_| !look.overlays.is_empty()) {
             None => Ok(picture.rgba8),
+            Some(shown) => {
+                annotate(&mut Figures::new(self.gpu, scene)?, look, &view, shown)?;
+                Ok(self.gpu.read_texture(shown)?)
+            }
         }
     }
 
@@ -127,7 +129,12 @@ impl<'g> Stage<'g> {
             Some(figures) => figures,
             none => none.insert(Figures::new(self.gpu, &self.session.scene)?),
         };
-        let options = Options { technique: look.settings.technique, ..Options::default() };
-        Ok(figures.draw(&look.overlays, view, &options, picture)?)
+        annotate(figures, look, view, picture)
     }
+}
+
+/// Draws the overlays of `look` over `picture`.
+fn annotate(figures: &mut Figures<'_>, look: &Look, view: &View, picture: &wgpu::Texture) -> Result<(), StageError> {
+    let options = Options { technique: look.settings.technique, ..Options::default() };
+    Ok(figures.draw(&look.overlays, view, &options, picture)?)
 }

@@ -198,8 +198,8 @@ impl<'g> Viewer<'g> {
         }
     }
 
-    fn try_save(&mut self, size: [u32; 2], view: bool) -> Result<Vec<Message>, String> {
-        let Some(stage) = &mut self.stage else { return Ok(Vec::new()) };
+    fn try_save(&self, size: [u32; 2], view: bool) -> Result<Vec<Message>, String> {
+        let Some(stage) = &self.stage else { return Ok(Vec::new()) };
         let pixels = stage.still(size).map_err(|error| chain(&error))?;
         let png = (self.host.encode)(size, &pixels)?;
         let session = &stage.session;

@@ -65,9 +65,12 @@ fn every_float_has_a_text_of_its_own() {
     assert_eq!(read.lights[0].intensity.to_bits(), 0x3EAA_AAAB);
 }
 
+/// Spoils a view.
+type Change = fn(&mut SavedView);
+
 #[test]
 fn what_makes_no_sense_is_refused_and_changes_nothing() {
-    let reason = |change: fn(&mut SavedView)| {
+    let reason = |change: Change| {
         let (_, mut saved) = view();
         change(&mut saved);
         let mut scene = scene();
@@ -76,7 +79,7 @@ fn what_makes_no_sense_is_refused_and_changes_nothing() {
         assert_eq!(format!("{:?}", scene.lights), before);
         error.to_string()
     };
-    let cases: [(fn(&mut SavedView), &str); 10] = [
+    let cases: [(Change, &str); 10] = [
         (|v| drop(v.casts.pop()), "instances"),
         (|v| v.camera.world_from_view.matrix3.x_axis *= 2.0, "rotation"),
         (|v| v.camera.world_from_view.matrix3.x_axis *= -1.0, "rotation"),
