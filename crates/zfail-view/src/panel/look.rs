@@ -14,7 +14,7 @@ pub fn camera(ui: &mut Ui, session: &mut Session, actions: &mut Vec<Action>) {
     ui.horizontal(|ui| {
         let cameras = &session.scene.cameras;
         let shown = session.rig.preset.and_then(|i| cameras.get(i)).map_or("free", |camera| &camera.name);
-        ComboBox::from_id_salt("camera").width(130.0).selected_text(shown).truncate().show_ui(ui, |ui| {
+        ComboBox::from_id_salt("camera").width(120.0).selected_text(shown).truncate().show_ui(ui, |ui| {
             for (i, camera) in cameras.iter().enumerate() {
                 if ui.selectable_label(session.rig.preset == Some(i), format!("{}  {}", i + 1, camera.name)).clicked() {
                     actions.push(Action::Camera(i));

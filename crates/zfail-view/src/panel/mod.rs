@@ -59,6 +59,7 @@ pub fn style(context: &egui::Context) {
     context.all_styles_mut(|style| {
         style.spacing.slider_width = 120.0;
         style.spacing.item_spacing.y = 4.0;
+        style.spacing.scroll = egui::style::ScrollStyle { bar_width: 6.0, ..egui::style::ScrollStyle::solid() };
         style.visuals.panel_fill = Color32::from_gray(30);
         style.visuals.widgets.noninteractive.fg_stroke.color = Color32::from_gray(195);
     });
@@ -81,7 +82,7 @@ pub fn show(
     }
     say(ui.ctx(), desk.visible, messages, loading);
     let Some(stage) = stage.filter(|_| desk.visible) else { return };
-    egui::Panel::right("panel").default_size(310.0).size_range(270.0..=520.0).show(ui, |ui| {
+    egui::Panel::right("panel").default_size(320.0).size_range(270.0..=520.0).show(ui, |ui| {
         scene::header(ui, desk, stage, recent, actions);
         ui.separator();
         egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
