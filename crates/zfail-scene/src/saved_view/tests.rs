@@ -16,7 +16,7 @@ fn view() -> (Scene, SavedView) {
     light.color = [0.1, 1.0 / 3.0, f32::MIN_POSITIVE];
     light.intensity = 16_777_216.0 / 3.0;
     light.excluded = vec![0];
-    light.shape.falloff = Vec::new();
+    light.shape = Default::default();
     let mut spot = light.clone();
     let direction = thirds.normalize();
     spot.kind = LightKind::Spot { position: -thirds, direction, range: PI * 1e3, inner: 0.1, outer: 0.7 };
