@@ -3,7 +3,9 @@
 mod support;
 
 use support::{Case, gpu};
-use zfail_methods::{Error, Figures, FiniteOptions, Method, Options, ShadowMapOptions};
+use zfail_methods::{Error, Figures, FiniteOptions, Method, Methods, Options, ShadowMapOptions};
+use zfail_render::{Renderer, Settings, Technique};
+use zfail_scene::builtin;
 
 /// Pixels that are wrongly dark and wrongly lit with a map of `resolution` and biases.
 fn map(case: &mut Case<'_>, resolution: u32, bias: f32, slope_bias: f32) -> [usize; 2] {
@@ -86,6 +88,35 @@ fn figures_follow_from_the_methods() {
     assert_eq!(preload.passes, everitt.passes + 1);
     assert!(mcguire.triangles < everitt.triangles && mcguire.fragments <= everitt.fragments);
     assert!(ours.triangles <= mcguire.triangles && ours.fragments <= mcguire.fragments);
+}
+
+/// The renderer counts what its pipelines rasterise, the stage here what it draws itself: two programs, one number.
+#[test]
+fn the_renderer_counts_the_same_fragments() {
+    let Some(gpu) = gpu() else { return };
+    let scene = builtin::scene("container").expect("a built-in scene");
+    let view = scene.cameras[0].view([160, 100], &scene.bounds());
+    let mut methods = Methods::new(&gpu, &scene).expect("methods");
+    let mut renderer = Renderer::new(&gpu, &scene).expect("a renderer");
+    let mut counted = |settings: &Settings| {
+        let mut stats = renderer.render(&view, settings).expect("a frame");
+        renderer.count_fragments(&mut stats).expect("counts");
+        stats.lights.iter().map(|light| light.fragments.expect("a count")).collect::<Vec<_>>()
+    };
+    let by = |technique| Settings { technique, ..Settings::default() }.repeatable();
+    for (method, technique) in [
+        (Method::EverittKilgard, Technique::EverittKilgard),
+        (Method::Mcguire, Technique::Mcguire),
+        (Method::Zfail, Technique::Auto),
+    ] {
+        let expected: Vec<u64> = (0..scene.lights.len())
+            .map(|light| methods.shadow(method, &view, light, &Options::default()).expect("a mask").figures.fragments)
+            .collect();
+        assert_eq!(counted(&by(technique)), expected, "{method}");
+    }
+    assert_ne!(counted(&by(Technique::Auto)), counted(&by(Technique::EverittKilgard)), "the comparison can fail");
+    let dark = Settings { shadows: false, ..by(Technique::Auto) };
+    assert_eq!(counted(&dark), vec![0; scene.lights.len()]);
 }
 
 #[test]

@@ -16,6 +16,7 @@ mod draw_list;
 mod error;
 mod exposure;
 mod forward_pass;
+mod fragment_counter;
 mod frame;
 mod geometry;
 mod gpu;

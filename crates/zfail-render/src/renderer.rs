@@ -5,6 +5,7 @@ use crate::attribute_pass::AttributePass;
 use crate::develop_pass::DevelopPass;
 use crate::exposure::ExposureMeter;
 use crate::forward_pass::{Attachments, ForwardPass, Shadows, Step};
+use crate::fragment_counter::FragmentCounter;
 use crate::frame::{FrameData, Shading};
 use crate::gpu_data::LightRecord;
 use crate::layouts::Layouts;
@@ -42,6 +43,9 @@ pub struct Renderer<'g> {
     targets: Option<Targets>,
     timer: Timer,
     measured: Option<Measured>,
+    /// Whether the last frame had shadows.
+    shadowed: bool,
+    fragments: Option<FragmentCounter>,
 }
 
 /// What measured outputs need.
@@ -81,6 +85,8 @@ impl<'g> Renderer<'g> {
             targets: None,
             timer: Timer::default(),
             measured: None,
+            shadowed: false,
+            fragments: None,
         })
     }
 
@@ -141,6 +147,24 @@ impl<'g> Renderer<'g> {
         self.draw(view, settings, finish)
     }
 
+    /// Counts the fragments of the volumes that the last frame drew, of which `stats` tells, in passes of their own. With
+    /// several samples per pixel it counts fragments of one. Without shadows there are none.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn count_fragments(&mut self, stats: &mut FrameStats) -> Result<(), RenderError> {
+        let Some(size) = self.targets.as_ref().map(|targets| targets.size) else { return Ok(()) };
+        if self.fragments.as_ref().is_none_or(|counter| !counter.fits(size)) {
+            self.fragments = Some(FragmentCounter::new(self.gpu, &self.scene.shadows, size));
+        }
+        let Some(counter) = &self.fragments else { return Ok(()) };
+        for (l, light) in stats.lights.iter_mut().enumerate() {
+            let shadows = Some(&self.scene.shadows).filter(|_| self.shadowed);
+            light.fragments = Some(shadows.map_or(Ok(0), |shadows| counter.count(self.gpu, shadows, l))?);
+        }
+        Ok(())
+    }
+
     /// The picture that [`Renderer::render`] or [`Renderer::picture`] left on the device, `Rgba8Unorm` with sRGB encoded
     /// by hand; to be sampled, copied, or drawn onto. Every new size has a texture of its own.
     #[must_use]
@@ -173,6 +197,7 @@ impl<'g> Renderer<'g> {
         let active: Vec<usize> = (0..chosen.len()).filter(|&i| lights::is_visible(&kinds[i], view)).collect();
 
         let start = Instant::now();
+        self.shadowed = settings.shadows;
         let figures = if settings.shadows {
             self.scene.plan(gpu, view, &chosen, &kinds, settings, Counting::Verdict)?
         } else {

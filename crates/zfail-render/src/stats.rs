@@ -37,7 +37,7 @@ pub struct LightFigures {
     pub triangles: TriangleFigures,
     /// Vertices submitted.
     pub vertices: u32,
-    /// Stencil fragments, where the device can count them.
+    /// Fragments of its shadow volumes, if [`crate::Renderer::count_fragments`] was asked.
     pub fragments: Option<u64>,
     /// Pixels that the light can reach: x, y, width, height.
     pub scissor: [u32; 4],

@@ -70,9 +70,13 @@ impl<'g> Stage<'g> {
         self.upload()?;
         let start = Instant::now();
         let view = self.session.view(size);
-        let stats = self.renderer.render(&view, &self.session.look.settings)?;
+        let mut stats = self.renderer.render(&view, &self.session.look.settings)?;
         self.annotate(&view)?;
         let time = start.elapsed();
+        // Off the clock; and where it would slow motion down, only when that has ended.
+        if !moving || self.gpu.info.device_type != wgpu::DeviceType::Cpu {
+            self.renderer.count_fragments(&mut stats)?;
+        }
         self.pace.took(size, time);
         self.last = Some(Drawn { size, time, stats });
         Ok(())

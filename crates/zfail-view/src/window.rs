@@ -21,13 +21,19 @@ use zfail_render::{Gpu, GpuOptions, RenderError};
 /// # Errors
 /// If there is no display or no device that can draw on it, or the device is lost.
 pub fn run(options: Options, host: Host) -> Result<(), ViewError> {
-    let no_display = |error: winit::error::EventLoopError| ViewError::NoDisplay(error.to_string());
+    let no_display = |error: winit::error::EventLoopError| ViewError::NoDisplay(without_place(&error.to_string()));
     let events = EventLoop::with_user_event().build().map_err(no_display)?;
     let gpu = OnceCell::new();
     let proxy = Arc::new(Mutex::new(events.create_proxy()));
     let mut app = App { gpu: &gpu, begin: Some((options, host)), proxy, open: None, outcome: Ok(()) };
     events.run_app(&mut app).map_err(no_display)?;
     app.outcome
+}
+
+/// An error of winit without the place in its sources that it begins with.
+fn without_place(error: &str) -> String {
+    let after = error.split_once(".rs:").and_then(|(_, place)| place.split_once(": "));
+    after.map_or(error, |(_, reason)| reason).trim_end_matches('.').to_owned()
 }
 
 /// The event loop's side.
@@ -61,7 +67,8 @@ impl<'g> App<'g> {
         let [width, height] = options.size;
         let attributes =
             Window::default_attributes().with_title("zfail").with_inner_size(PhysicalSize::new(width, height));
-        let window = events.create_window(attributes).map_err(|e| ViewError::NoDisplay(e.to_string()))?;
+        let window =
+            events.create_window(attributes).map_err(|e| ViewError::NoDisplay(without_place(&e.to_string())))?;
         let window = Arc::new(window);
         let (gpu, instance, surface, capabilities) = device(events, &window, &options.gpu)?;
         let lost = Arc::new(OnceLock::new());
@@ -216,5 +223,15 @@ impl ApplicationHandler<Loaded> for App<'_> {
             }
             Some(due) => events.set_control_flow(ControlFlow::WaitUntil(due)),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn users_see_reasons_and_not_sources() {
+        let with = "os error at /a/winit/src/linux/mod.rs:765: neither DISPLAY nor WAYLAND_DISPLAY is set.";
+        assert_eq!(super::without_place(with), "neither DISPLAY nor WAYLAND_DISPLAY is set");
+        assert_eq!(super::without_place("the loop was made twice"), "the loop was made twice");
     }
 }

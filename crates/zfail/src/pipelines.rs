@@ -10,10 +10,10 @@
 
 use crate::tiles::VerdictPipeline;
 use wgpu::{
-    BindGroupLayout, ColorTargetState, ColorWrites, CompareFunction, DepthStencilState, Device, Features,
-    FragmentState, FrontFace, MultisampleState, PipelineCompilationOptions, PipelineLayoutDescriptor, PrimitiveState,
-    RenderPipeline, RenderPipelineDescriptor, ShaderModule, StencilFaceState, StencilOperation, StencilState,
-    TextureFormat, VertexState,
+    BindGroupLayout, BlendComponent, BlendFactor, BlendOperation, BlendState, ColorTargetState, ColorWrites,
+    CompareFunction, DepthStencilState, Device, Features, FragmentState, FrontFace, MultisampleState,
+    PipelineCompilationOptions, PipelineLayoutDescriptor, PrimitiveState, RenderPipeline, RenderPipelineDescriptor,
+    ShaderModule, StencilFaceState, StencilOperation, StencilState, TextureFormat, VertexState,
 };
 
 /// The formats of the pass into which shadows are encoded.
@@ -73,7 +73,21 @@ pub(crate) struct Variant {
 
 impl Pipelines {
     pub(crate) fn new(device: &Device, layout: &BindGroupLayout, module: &ShaderModule, target: &Target<'_>) -> Self {
-        let maker = Maker { device, layout, module, target };
+        Self::made_by(&Maker { device, layout, module, target, counter: false })
+    }
+
+    /// Pipelines that leave the stencil as it is, and add 1 to the first colour attachment for every fragment of a volume.
+    pub(crate) fn counting_fragments(
+        device: &Device,
+        layout: &BindGroupLayout,
+        module: &ShaderModule,
+        target: &Target<'_>,
+    ) -> Self {
+        Self { tiles: None, ..Self::made_by(&Maker { device, layout, module, target, counter: true }) }
+    }
+
+    fn made_by(maker: &Maker<'_>) -> Self {
+        let Maker { device, target, .. } = maker;
         Self {
             z_pass: maker.set("volume", None, false, true),
             plain: maker.set("volume", None, false, false),
@@ -112,6 +126,8 @@ struct Maker<'a> {
     layout: &'a BindGroupLayout,
     module: &'a ShaderModule,
     target: &'a Target<'a>,
+    /// Whether volumes add to the first colour attachment instead of counting in the stencil.
+    counter: bool,
 }
 
 impl Maker<'_> {
@@ -123,6 +139,10 @@ impl Maker<'_> {
                 let stencil =
                     StencilState { front, back, read_mask: 0, write_mask: if batched { BATCH_MASK } else { 0xff } };
                 let primitive = PrimitiveState { front_face, unclipped_depth, ..PrimitiveState::default() };
+                if self.counter {
+                    let (all, none) = (CompareFunction::Always, StencilState::default());
+                    return self.pipeline(vertex, Some("one"), primitive, all, none);
+                }
                 self.pipeline(vertex, fragment, primitive, CompareFunction::Greater, stencil)
             })
         })
@@ -158,16 +178,14 @@ impl Maker<'_> {
             bind_group_layouts: &[Some(self.layout)],
             immediate_size: 0,
         });
-        let untouched: Vec<Option<ColorTargetState>> = self
-            .target
-            .colors
-            .iter()
-            .map(|format| {
-                format.map(|format| ColorTargetState { format, blend: None, write_mask: ColorWrites::empty() })
-            })
-            .collect();
+        let adds = fragment == Some("one");
+        let write_mask = if adds { ColorWrites::ALL } else { ColorWrites::empty() };
+        let blend = adds.then_some(ADD);
+        let colors = self.target.colors.iter();
+        let targets: Vec<Option<ColorTargetState>> =
+            colors.map(|format| format.map(|format| ColorTargetState { format, blend, write_mask })).collect();
         // A pass with colour attachments wants a fragment stage that names them.
-        let fragment = fragment.or((!untouched.is_empty()).then_some("nothing"));
+        let fragment = fragment.or((!targets.is_empty()).then_some("nothing"));
         self.device.create_render_pipeline(&RenderPipelineDescriptor {
             label: Some("shadow volume"),
             layout: Some(&layout),
@@ -190,13 +208,22 @@ impl Maker<'_> {
                 module: self.module,
                 entry_point: Some(entry),
                 compilation_options: PipelineCompilationOptions::default(),
-                targets: &untouched,
+                targets: &targets,
             }),
             multiview_mask: None,
             cache: None,
         })
     }
 }
+
+const ADD: BlendState = BlendState {
+    color: BlendComponent {
+        src_factor: BlendFactor::One,
+        dst_factor: BlendFactor::One,
+        operation: BlendOperation::Add,
+    },
+    alpha: BlendComponent::REPLACE,
+};
 
 /// Counts fragments that fail the depth test: those at or behind the visible surface, for the test is strict.
 const fn behind(operation: StencilOperation) -> StencilFaceState {

@@ -168,6 +168,14 @@ impl Shadows {
         Pipelines::new(device, &self.layout, &self.module, target)
     }
 
+    /// Pipelines for [`Self::draw`] that leave the stencil as it is and add 1 to the first colour attachment, of a format that
+    /// can be blended, for every fragment of a volume, whether it passes the depth test or not: what the volumes cost in fill.
+    /// What the tile pass would count is rasterised too.
+    #[must_use]
+    pub fn fragment_counters(&self, device: &Device, target: &Target<'_>) -> Pipelines {
+        Pipelines::counting_fragments(device, &self.layout, &self.module, target)
+    }
+
     /// Plans every light of a frame and uploads its volumes, or submits compute work that finds them. Call it before
     /// encoding the frame's passes, and submit those before preparing the next frame. [`Self::plan`] then tells what will
     /// be drawn.

@@ -51,6 +51,12 @@ fn volume(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: 
 @fragment
 fn nothing() {}
 
+// For passes that count fragments: the colour attachment adds them up.
+@fragment
+fn one() -> @location(0) vec4<f32> {
+    return vec4<f32>(1.0);
+}
+
 // Depth clamping (Everitt & Kilgard 2002, section 3.4) by hand, for devices without it: the rasteriser sees a depth it will
 // not clip, and the fragment gets the clamped true one, per sample, because every sample is tested on its own.
 struct ClampedVolume {

@@ -109,8 +109,10 @@ impl<'g> Player<'g> {
     }
 
     fn play(&mut self, course: &Course, k: usize, counts: bool) -> Result<(), Error> {
-        let frame = self.time(course, k).map_err(|e| failed(&e))?;
+        let mut frame = self.time(course, k).map_err(|e| failed(&e))?;
         if counts {
+            // Off the clock.
+            self.renderer.count_fragments(&mut frame.stats).map_err(|e| failed(&e))?;
             self.samples.push(frame);
         }
         Ok(())

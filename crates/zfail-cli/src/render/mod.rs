@@ -52,7 +52,8 @@ fn still(args: &args::Render) -> Result<(), Error> {
     let mut overlays = Overlays::new(&gpu, &scene, &args.overlays, &lights, args.technique)?;
     progress.inc(1);
     progress.set_message("rendering");
-    let results = Results::new(&mut renderer, overlays.as_mut(), &view, &settings, &args.aovs, &progress)?;
+    let results =
+        Results::new(&mut renderer, overlays.as_mut(), &view, &settings, &args.aovs, args.stats.is_some(), &progress)?;
     progress.set_message("writing");
 
     let mut outputs = Outputs::default();
@@ -66,7 +67,8 @@ fn still(args: &args::Render) -> Result<(), Error> {
 }
 
 fn settings(args: &args::Render, lights: &[usize]) -> Settings {
-    let settings = Settings {
+    // Files are the same bytes on every run.
+    Settings {
         technique: args.technique,
         samples: args.samples,
         shadows: !args.no_shadows,
@@ -74,9 +76,8 @@ fn settings(args: &args::Render, lights: &[usize]) -> Settings {
         exposure: args.exposure,
         terminator: args.terminator,
         ..Settings::default()
-    };
-    // The viewer has shown what is to come.
-    if args.view.is_some() { settings.repeatable() } else { settings }
+    }
+    .repeatable()
 }
 
 /// What the renderer says, as the program says it.

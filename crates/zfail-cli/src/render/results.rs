@@ -20,7 +20,7 @@ pub struct Results {
 }
 
 impl Results {
-    /// Renders the picture and whatever else is asked for, a step of `progress` each.
+    /// Renders the picture and whatever else is asked for, a step of `progress` each; with `counts` figures have fragments.
     ///
     /// # Errors
     /// If the renderer or the device fails.
@@ -30,9 +30,13 @@ impl Results {
         view: &View,
         settings: &Settings,
         aovs: &[Aov],
+        counts: bool,
         progress: &ProgressBar,
     ) -> Result<Self, Error> {
-        let (mut picture, stats) = renderer.picture(view, settings).map_err(|e| failed(&e))?;
+        let (mut picture, mut stats) = renderer.picture(view, settings).map_err(|e| failed(&e))?;
+        if counts {
+            renderer.count_fragments(&mut stats).map_err(|e| failed(&e))?;
+        }
         if let Some(overlays) = overlays {
             overlays.draw(renderer, view, &mut picture)?;
         }

@@ -99,7 +99,15 @@ impl Frame {
         request: &Request,
         args: &args::Render,
     ) -> Result<(), Error> {
-        let results = Results::new(renderer, overlays, &self.view, settings, &args.aovs, &ProgressBar::hidden())?;
+        let results = Results::new(
+            renderer,
+            overlays,
+            &self.view,
+            settings,
+            &args.aovs,
+            args.stats.is_some(),
+            &ProgressBar::hidden(),
+        )?;
         let format = args.output.format;
         let (pixels, sides) = (results.pixels(format), results.sides(args)?);
         let seal = request.seal(&pixels, &sides);

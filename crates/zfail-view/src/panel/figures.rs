@@ -31,9 +31,10 @@ pub fn figures(ui: &mut Ui, stage: &Stage<'_>, gpu: &wgpu::AdapterInfo) {
             ("vertices", total(|light| light.vertices)),
         ] {
             ui.label(name);
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(grouped(count)));
-            ui.end_row();
+            number(ui, Some(count.into()));
         }
+        ui.label("fragments");
+        number(ui, stats.lights.iter().map(|light| light.fragments).sum());
     });
     if stats.lights.len() > 1 {
         egui::CollapsingHeader::new("By light")
@@ -41,6 +42,13 @@ pub fn figures(ui: &mut Ui, stage: &Stage<'_>, gpu: &wgpu::AdapterInfo) {
             .show(ui, |ui| by_light(ui, stage, &stats.lights));
     }
     ui.weak(format!("{} ({})", gpu.name, gpu.backend));
+}
+
+/// The end of a row: a number, if it is known.
+fn number(ui: &mut Ui, count: Option<u64>) {
+    let text = count.map_or("-".to_owned(), grouped);
+    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(text));
+    ui.end_row();
 }
 
 fn by_light(ui: &mut Ui, stage: &Stage<'_>, lights: &[LightFigures]) {
@@ -54,8 +62,8 @@ fn by_light(ui: &mut Ui, stage: &Stage<'_>, lights: &[LightFigures]) {
             let triangles = light.triangles;
             ui.add(egui::Label::new(name).truncate());
             ui.monospace(light.cases.map(|count| count.to_string()).join("/"));
-            ui.monospace(grouped(triangles.sides + triangles.dark_cap + triangles.light_cap));
-            ui.monospace(light.fragments.map_or("-".to_owned(), |count| count.to_string()));
+            ui.monospace(grouped((triangles.sides + triangles.dark_cap + triangles.light_cap).into()));
+            ui.monospace(light.fragments.map_or("-".to_owned(), grouped));
             ui.monospace(light.shadow_ms.map_or("-".to_owned(), |ms| format!("{ms:.2}")));
             ui.end_row();
         }
@@ -63,7 +71,7 @@ fn by_light(ui: &mut Ui, stage: &Stage<'_>, lights: &[LightFigures]) {
 }
 
 /// A number with its thousands apart.
-fn grouped(number: u32) -> String {
+fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let groups: Vec<&str> =
         digits.as_bytes().rchunks(3).rev().filter_map(|group| std::str::from_utf8(group).ok()).collect();
