@@ -95,7 +95,7 @@ impl<'g> Stage<'g> {
     pub fn still(&self, size: [u32; 2]) -> Result<Vec<u8>, StageError> {
         let Session { scene, look, .. } = &self.session;
         let view = self.session.view(size);
-        // A renderer's plans remember earlier frames, which may round a silhouette otherwise.
+        // One that has drawn before was seen to round a few colours otherwise, in their last bit.
         let mut renderer = Renderer::new(self.gpu, scene)?;
         let picture = renderer.picture(&view, &look.settings.clone().repeatable())?.0;
         match renderer.shown().filter(|_| !look.overlays.is_empty()) {
