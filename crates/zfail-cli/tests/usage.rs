@@ -177,6 +177,7 @@ fn help_lists_every_option_of_the_contract() {
             "-o, --output <OUT>",
             "--size <WxH>",
             "--camera <N|NAME>",
+            "--view <FILE.json>",
             "--time <SECONDS>",
             "--animation <NAME|N>",
             "--frames <A..B>",

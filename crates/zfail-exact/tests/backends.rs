@@ -8,12 +8,12 @@ use zfail_render::{Gpu, GpuOptions, Settings};
 
 const SWIFTSHADER: &str = "/usr/lib/chromium/vk_swiftshader_icd.json";
 
-/// Verdicts of three scenes of every kind, and which are wrong.
+/// Verdicts of two scenes of every kind, and which are wrong.
 fn verdicts(gpu: &Gpu) -> (Tally, Vec<String>) {
     println!("{} ({})", gpu.info.name, gpu.info.driver_info);
     let (mut masks, mut failures) = (Tally::default(), Vec::new());
     for kind in Kind::ALL {
-        for seed in 1..=3 {
+        for seed in 1..=2 {
             let images = bench::images(gpu, &kind.recipe(seed, [192, 120]), &Settings::default());
             let comparisons = images.and_then(|i| i.compare()).unwrap_or_else(|e| panic!("{kind:?} seed {seed}: {e}"));
             for comparison in &comparisons {
@@ -26,7 +26,7 @@ fn verdicts(gpu: &Gpu) -> (Tally, Vec<String>) {
         }
     }
     println!("{masks}");
-    assert!(masks.checked > 500_000, "{} pixels checked", masks.checked);
+    assert!(masks.checked > 330_000, "{} pixels checked", masks.checked);
     (masks, failures)
 }
 

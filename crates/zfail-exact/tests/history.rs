@@ -12,7 +12,7 @@ fn path(last: &View, extent: f64) -> Vec<View> {
         let offset = DVec3::new((3.0 * t).sin(), 0.5 * t, (2.0 * t).cos() - 1.0) * extent * 0.2;
         View { world_from_view: DAffine3::from_translation(offset) * last.world_from_view, ..*last }
     };
-    [1.0, 0.6, 0.25, 0.0].map(at).to_vec()
+    [0.6, 0.0].map(at).to_vec()
 }
 
 /// The scene's pose with its placed lights elsewhere.
@@ -32,36 +32,33 @@ fn pictures_and_verdicts_do_not_depend_on_earlier_frames() {
     let settings = Settings { samples: 4, ..Settings::default() }.repeatable();
     let (mut images, mut changes, mut differing) = (0, 0, Vec::new());
     for kind in Kind::ALL {
-        for seed in 1..=2 {
-            let recipe = kind.recipe(seed, [160, 100]);
-            let scene = recipe.scene();
-            let extent = scene.bounds().half().length();
-            let mut last = Vec::new();
-            let mut used = Renderer::new(&gpu, &scene).expect("a renderer");
-            for (step, view) in path(&recipe.view, extent).iter().enumerate() {
-                // Lights go elsewhere and come back.
-                for offset in [DVec3::splat(0.1 * extent), DVec3::ZERO] {
-                    used.set_pose(&moved(&scene, offset)).expect("a pose");
-                    used.render(view, &settings).expect("a frame");
-                }
-                let mut fresh = Renderer::new(&gpu, &scene).expect("a renderer");
-                let [a, b] = [&mut used, &mut fresh].map(|renderer| {
-                    let picture = renderer.picture(view, &settings).expect("a picture").0.rgba8;
-                    (picture, renderer.aovs(view, &settings, &[AovKind::Shadow]).expect("masks").shadow)
-                });
-                images += 1;
-                changes += usize::from(a.0 != last);
-                last.clone_from(&a.0);
-                if a != b {
-                    let pixels = a.0.chunks(4).zip(b.0.chunks(4)).filter(|(a, b)| a != b).count();
-                    differing
-                        .push(format!("{kind:?} seed {seed}, frame {step}: {pixels} pixels, masks {}", a.1 == b.1));
-                }
+        let recipe = kind.recipe(1, [160, 100]);
+        let scene = recipe.scene();
+        let extent = scene.bounds().half().length();
+        let mut last = Vec::new();
+        let mut used = Renderer::new(&gpu, &scene).expect("a renderer");
+        for (step, view) in path(&recipe.view, extent).iter().enumerate() {
+            // Lights go elsewhere and come back.
+            for offset in [DVec3::splat(0.1 * extent), DVec3::ZERO] {
+                used.set_pose(&moved(&scene, offset)).expect("a pose");
+                used.render(view, &settings).expect("a frame");
+            }
+            let mut fresh = Renderer::new(&gpu, &scene).expect("a renderer");
+            let [a, b] = [&mut used, &mut fresh].map(|renderer| {
+                let picture = renderer.picture(view, &settings).expect("a picture").0.rgba8;
+                (picture, renderer.aovs(view, &settings, &[AovKind::Shadow]).expect("masks").shadow)
+            });
+            images += 1;
+            changes += usize::from(a.0 != last);
+            last.clone_from(&a.0);
+            if a != b {
+                let pixels = a.0.chunks(4).zip(b.0.chunks(4)).filter(|(a, b)| a != b).count();
+                differing.push(format!("{kind:?}, frame {step}: {pixels} pixels, masks {}", a.1 == b.1));
             }
         }
     }
     assert!(
-        images > 100 && changes > images / 2,
+        images > 30 && changes > images / 2,
         "the comparison can fail: {changes} of {images} pictures are new ones"
     );
     assert!(differing.is_empty(), "{differing:#?}");
