@@ -51,16 +51,25 @@ enum Outcome {
     Skipped(&'static str),
 }
 
-/// Runs all checks.
+/// Runs all checks; `browser` says whether pages can be tested, or why not.
 ///
 /// # Errors
 /// If one of them fails, or is skipped where `CI` or `ZFAIL_CI` is set.
-pub fn run() -> Result<(), String> {
+pub fn run(browser: Result<(), String>) -> Result<(), String> {
     let strict = ["CI", "ZFAIL_CI"].iter().any(|name| env::var_os(name).is_some_and(|value| !value.is_empty()));
+    // Not every system packages one: Ubuntu has chromium as a snap alone.
+    let without_browser = match browser {
+        Err(reason) if strict => return Err(reason),
+        Err(reason) => {
+            println!("Tests of pages are skipped: {reason}");
+            true
+        }
+        Ok(()) => false,
+    };
     let mut summary = Vec::new();
     for check in &CHECKS {
         let start = Instant::now();
-        let outcome = check.run()?;
+        let outcome = check.run(without_browser)?;
         summary.push((check.name, outcome, start.elapsed()));
     }
 
@@ -80,7 +89,7 @@ pub fn run() -> Result<(), String> {
 }
 
 impl Check {
-    fn run(&self) -> Result<Outcome, String> {
+    fn run(&self, without_browser: bool) -> Result<Outcome, String> {
         println!("\n+ cargo {}", self.arguments.join(" "));
         if let Some(component) = self.component
             && !has_component(component)
@@ -90,6 +99,9 @@ impl Check {
         }
         let mut command = cargo();
         command.args(self.arguments).envs(self.environment.iter().copied());
+        if without_browser {
+            command.env("ZFAIL_WITHOUT_BROWSER", "1");
+        }
         let status = command.status().map_err(|e| format!("cannot start cargo: {e}"))?;
         Ok(if status.success() { Outcome::Passed } else { Outcome::Failed })
     }

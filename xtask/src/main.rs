@@ -33,8 +33,7 @@ fn main() -> ExitCode {
         ["demo"] => setup::graphics_adapter().and_then(|()| demo()),
         ["test"] => setup::graphics_adapter()
             .and_then(|()| setup::virtual_display())
-            .and_then(|()| browser::browser())
-            .and_then(|()| checks::run()),
+            .and_then(|()| checks::run(browser::browser())),
         ["fuzz", seconds, ref targets @ ..] => fuzz::run(seconds, targets),
         ["figures"] => setup::graphics_adapter().and_then(|()| figures::run(None)),
         ["figures", name] => setup::graphics_adapter().and_then(|()| figures::run(Some(name))),
