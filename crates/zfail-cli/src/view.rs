@@ -18,6 +18,7 @@ pub fn run(args: &args::View) -> Result<(), Error> {
     let host = Host {
         load: Arc::new(move |scene| input::complete(scene, &loading).map_err(|e| e.to_string())),
         encode: |size, rgba| encode::png_picture(size, &encode::rgb8(rgba), None).map_err(|e| e.to_string()),
+        explain: input::chain,
         say,
     };
     let options = Options {

@@ -3,66 +3,32 @@
 //!
 //! In: model, the eye's view, lights. Out: a drawing on paper.
 
-use crate::clipping::{Region, fan};
-use crate::drawing::{Drawing, Surfaces, flat};
+use crate::clipped;
+use crate::clipping::Region;
+use crate::drawing::Drawing;
 use crate::model::Model;
-use crate::over_picture;
-use crate::palette::{self, with_opacity};
 use crate::paper::{self, Paper};
 use crate::plans::Plans;
 use crate::third_person::Camera;
 use crate::{Error, Overlay, pyramid};
-use zfail_plan::glam::{DVec3, DVec4};
+use zfail_plan::glam::{DMat4, DVec3, DVec4};
 
 /// The alternate view of `paper`.
 pub fn compose(model: &mut Model, plans: &mut Plans, paper: &Paper<'_>) -> Result<Drawing, Error> {
     let whole = plans.whole(model, paper.view, paper.lights)?;
     let region = Region::frustum(&model.clip_from_anchored(paper.view));
-    let scene = clipped_scene(model, &region);
+    let scene = clipped::scene(model, &region);
     let points = worth_seeing(model, paper, scene.iter().flat_map(|(corners, _)| corners));
     let turn = paper.view.world_from_view.matrix3;
     let camera = Camera::around(&points, -turn.z_axis, turn.y_axis, paper.from, paper.view.size);
 
-    let surfaces = scene.iter().flat_map(|&(corners, color)| paper::shaded(corners, color, camera.position)).collect();
-    let mut drawing = Drawing::new(camera.clip_from_origin, false, Surfaces::Paper(surfaces));
-    let by_light = paper.shows(Overlay::VolumesByLight);
-    let mut polygon = Vec::new();
-    for triangle in &whole.triangles {
-        region.triangle(triangle.corners, &mut polygon);
-        let (hue, opacity) = over_picture::glass_color(model, triangle, by_light, paper.lights);
-        for corners in fan(&polygon) {
-            drawing.glass.extend(flat(corners, with_opacity(hue, 0.6 * opacity), triangle.winding.into()));
-        }
-    }
-    for (light, edge) in &whole.silhouettes {
-        if let Some(edge) = region.segment(*edge) {
-            let hue = if by_light { model.hues[paper.lights[*light]] } else { palette::INK };
-            drawing.line(edge, paper.line(hue, 0.7));
-        }
-    }
-    if paper.shows(Overlay::Wireframe) {
-        let wires = over_picture::wires(model).filter_map(|(edge, _)| region.segment(edge));
-        wires.for_each(|edge| drawing.line(edge, paper.line(palette::INK, 0.3)));
-    }
+    let mut drawing = clipped::drawing(model, &whole, &region, &scene, paper, &camera, &DMat4::IDENTITY);
     paper::frustum(&mut drawing, model, paper);
     if paper.shows(Overlay::Pyramid) {
         pyramid::add(&mut drawing, model, paper);
     }
     paper::eye_and_lights(&mut drawing, model, paper, &camera, &points);
-    over_picture::volume_legend(&mut drawing, model, by_light, paper.lights);
     Ok(drawing)
-}
-
-/// Solid triangles in the region, with their colours.
-pub fn clipped_scene(model: &Model, region: &Region) -> Vec<([DVec4; 3], [u8; 3])> {
-    let (mut scene, mut polygon) = (Vec::new(), Vec::new());
-    for (i, instance) in model.instances.iter().enumerate() {
-        for (t, face) in model.meshes[instance.mesh].faces.iter().enumerate().filter(|(_, face)| face.solid) {
-            region.triangle(model.corners(i, t), &mut polygon);
-            scene.extend(fan(&polygon).map(|corners| (corners, face.color)));
-        }
-    }
-    scene
 }
 
 /// Points that the image has to show: those of the scene, the eye, and lights that are not too far away or the arrows that

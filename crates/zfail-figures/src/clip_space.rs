@@ -6,17 +6,17 @@
 //! With the far plane at infinity and the near plane close to the eye, almost everything lies within a hair of the far
 //! plane. The figure takes the near plane as far away as it can without cutting what is visible; infinity stays where it is.
 
-use crate::alternate::clipped_scene;
-use crate::clipping::{Region, fan};
-use crate::drawing::{Drawing, Surfaces, flat};
+use crate::Error;
+use crate::clipped;
+use crate::clipping::Region;
+use crate::drawing::Drawing;
 use crate::light_bounds::box_edges;
 use crate::model::Model;
 use crate::over_picture;
-use crate::palette::{self, with_opacity};
+use crate::palette;
 use crate::paper::{self, Paper};
 use crate::plans::Plans;
 use crate::third_person::Camera;
-use crate::{Error, Overlay};
 use zfail_plan::glam::{DMat4, DVec3, DVec4};
 use zfail_plan::scene::Bounds;
 use zfail_plan::view::{Projection, View};
@@ -35,32 +35,8 @@ pub fn compose(model: &mut Model, plans: &mut Plans, paper: &Paper<'_>) -> Resul
     let corners = Bounds { min: -half, max: half }.corners();
     let camera = Camera::around(&corners, DVec3::NEG_Z, DVec3::Y, paper.from, view.size);
 
-    let scene = clipped_scene(model, &region);
-    let surfaces = scene
-        .iter()
-        .flat_map(|&(corners, color)| paper::shaded(corners.map(|p| boxed * p), color, camera.position))
-        .collect();
-    let mut drawing = Drawing::new(camera.clip_from_origin, false, Surfaces::Paper(surfaces));
-    let by_light = paper.shows(Overlay::VolumesByLight);
-    let mut polygon = Vec::new();
-    for triangle in &whole.triangles {
-        region.triangle(triangle.corners, &mut polygon);
-        let (hue, opacity) = over_picture::glass_color(model, triangle, by_light, paper.lights);
-        for corners in fan(&polygon) {
-            let corners = corners.map(|p| boxed * p);
-            drawing.glass.extend(flat(corners, with_opacity(hue, 0.6 * opacity), triangle.winding.into()));
-        }
-    }
-    for (light, edge) in &whole.silhouettes {
-        if let Some(edge) = region.segment(*edge) {
-            let hue = if by_light { model.hues[paper.lights[*light]] } else { palette::INK };
-            drawing.line(edge.map(|p| boxed * p), paper.line(hue, 0.7));
-        }
-    }
-    if paper.shows(Overlay::Wireframe) {
-        let wires = over_picture::wires(model).filter_map(|(edge, _)| region.segment(edge));
-        wires.for_each(|edge| drawing.line(edge.map(|p| boxed * p), paper.line(palette::INK, 0.3)));
-    }
+    let scene = clipped::scene(model, &region);
+    let mut drawing = clipped::drawing(model, &whole, &region, &scene, paper, &camera, &boxed);
     for edge in box_edges(corners.map(|c| c.extend(1.0))) {
         drawing.line(edge, paper.line(palette::FRUSTUM, 1.0));
     }
@@ -77,7 +53,6 @@ pub fn compose(model: &mut Model, plans: &mut Plans, paper: &Paper<'_>) -> Resul
     };
     label(&mut drawing, -1.15, half.z, &format!("near plane, {near:.3} m"));
     label(&mut drawing, 1.15, -half.z, if view.is_finite() { "far plane" } else { "far plane, at infinity" });
-    over_picture::volume_legend(&mut drawing, model, by_light, paper.lights);
     Ok(drawing)
 }
 
@@ -97,7 +72,7 @@ fn box_from_clip(aspect: f64) -> DMat4 {
 fn with_far_near_plane(model: &Model, view: &View) -> (View, f64) {
     let Projection::Perspective { yfov, near, far } = view.projection else { return (*view, view.near()) };
     let clip_from_anchored = model.clip_from_anchored(view);
-    let scene = clipped_scene(model, &Region::frustum(&clip_from_anchored));
+    let scene = clipped::scene(model, &Region::frustum(&clip_from_anchored));
     let depths = scene.iter().flat_map(|(corners, _)| corners).map(|&p| (clip_from_anchored * p).w / p.w);
     let nearest = 0.98 * depths.fold(f64::INFINITY, f64::min);
     let near = if nearest.is_finite() { near.max(nearest) } else { near };
@@ -133,7 +108,7 @@ mod tests {
         // The eye's own near plane leaves the scene at the far plane.
         let unmoved = box_from_clip(view.aspect()) * model.clip_from_anchored(&view);
         let corner = |p: DVec4| unmoved * p;
-        let all = clipped_scene(&model, &Region::frustum(&model.clip_from_anchored(&view)));
+        let all = clipped::scene(&model, &Region::frustum(&model.clip_from_anchored(&view)));
         let nearest = all.iter().flat_map(|(c, _)| c.map(corner)).map(|p| p.z / p.w).fold(-9.0, f64::max);
         assert!(nearest < -0.5 * half.z, "the check can fail: {nearest}");
     }

@@ -9,6 +9,7 @@
 mod alternate;
 mod canvas;
 mod clip_space;
+mod clipped;
 mod clipping;
 mod drawing;
 mod error;

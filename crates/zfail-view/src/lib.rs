@@ -29,6 +29,7 @@ pub use error::ViewError;
 pub use message::Message;
 pub use window::run;
 
+use std::error::Error;
 use std::fmt;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -67,6 +68,8 @@ pub struct Host {
     pub load: Load,
     /// Makes a picture's file.
     pub encode: Encode,
+    /// An error with its causes, as one line.
+    pub explain: fn(&dyn Error) -> String,
     /// Says on the terminal what the window says.
     pub say: fn(&Message),
 }

@@ -114,7 +114,7 @@ impl<'g> Viewer<'g> {
         let edited = stage.session.changes.picture && context.egui_is_using_pointer();
         let moving = outcome.moving || playing || edited;
         if let Err(error) = stage.draw(full, moving) {
-            self.say(Message::Error(chain(&error)));
+            self.say(Message::Error((self.host.explain)(&error)));
         } else if playing {
             context.request_repaint();
         } else if moving {
@@ -169,10 +169,11 @@ impl<'g> Viewer<'g> {
             return;
         }
         self.loading.0 = None;
+        let explain = self.host.explain;
         let shown = result.and_then(|animated| {
             let look = self.stage.as_ref().map_or(&self.look, |stage| &stage.session.look).clone();
             let session = Session::new(source.clone(), *animated, look);
-            Stage::new(self.gpu, session).map_err(|error| format!("cannot show '{source}': {}", chain(&error)))
+            Stage::new(self.gpu, session).map_err(|error| format!("cannot show '{source}': {}", explain(&error)))
         });
         match shown {
             Ok(stage) => {
@@ -200,7 +201,7 @@ impl<'g> Viewer<'g> {
 
     fn try_save(&self, size: [u32; 2], view: bool) -> Result<Vec<Message>, String> {
         let Some(stage) = &self.stage else { return Ok(Vec::new()) };
-        let pixels = stage.still(size).map_err(|error| chain(&error))?;
+        let pixels = stage.still(size).map_err(|error| (self.host.explain)(&error))?;
         let png = (self.host.encode)(size, &pixels)?;
         let session = &stage.session;
         let json = view.then(|| SavedView::new(&session.scene, &session.rig.camera).to_json());
@@ -219,18 +220,4 @@ impl<'g> Viewer<'g> {
             others => others.iter().map(saved).collect(),
         })
     }
-}
-
-/// An error with its causes, each said once.
-fn chain(error: &dyn std::error::Error) -> String {
-    let mut text = error.to_string();
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        let reason = error.to_string();
-        if !text.contains(&reason) {
-            text = format!("{text}: {reason}");
-        }
-        cause = error.source();
-    }
-    text
 }
