@@ -7,6 +7,7 @@ mod light;
 mod material;
 mod mesh;
 mod pose;
+mod surroundings;
 
 pub use bounds::Bounds;
 pub use light::{Light, LightKind, LightShape};
@@ -16,6 +17,7 @@ pub use material::{
 };
 pub use mesh::{Mesh, Primitive};
 pub use pose::{BentMesh, Pose};
+pub use surroundings::{Ground, Sky};
 
 use crate::topology::Surface;
 use crate::view::Projection;
@@ -46,6 +48,10 @@ pub struct Scene {
     pub ambient: [f32; 3],
     /// Radiance of pixels that see no surface, linear RGB.
     pub background: [f32; 3],
+    /// A sky whose light comes from all sides, beside [`Scene::ambient`].
+    pub sky: Option<Sky>,
+    /// A ground that shows shadows and is otherwise not there.
+    pub ground: Option<Ground>,
     /// Whether blended and transmissive surfaces cast shadows, as solid ones do.
     pub blended_casts: bool,
     /// What the loader repaired, replaced or left out, for the user to read.
