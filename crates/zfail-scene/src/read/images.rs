@@ -2,15 +2,12 @@
 
 use super::document::Document;
 use super::error::{Fault, Result, invalid};
-use super::fence::fenced;
 use super::ktx::{self, Ktx};
 use super::limits::Budget;
+use super::raster::Raster;
 use super::uri;
-use image::error::ImageError;
-use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 use rayon::prelude::*;
 use std::borrow::Cow;
-use std::io::Cursor;
 use std::path::Path;
 use zfail_plan::scene::Image;
 
@@ -45,34 +42,29 @@ fn decode(document: &Document<'_>, folder: &Path, i: usize) -> Result<Decoded> {
     if bytes.starts_with(ktx::SIGNATURE) {
         return decode_ktx(name, &bytes, &document.budget, &element);
     }
-    match image::guess_format(&bytes) {
-        Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::WebP)) => {
-            decode_common(name, &bytes, format, &document.budget, &element)
-        }
-        _ => Ok(Err(format!("image \"{name}\" is neither PNG, JPEG, WebP nor KTX 2.0 and is left out"))),
+    match Raster::open(&bytes) {
+        Some(raster) => decode_raster(name, raster, &document.budget, &element),
+        None => Ok(Err(format!("image \"{name}\" is neither PNG, JPEG, WebP nor KTX 2.0 and is left out"))),
     }
 }
 
-fn decode_common(name: String, bytes: &[u8], format: ImageFormat, budget: &Budget, element: &str) -> Result<Decoded> {
-    let damaged = |why: &dyn std::fmt::Display| Ok(Err(format!("image \"{name}\" is damaged and is left out: {why}")));
-    let decoded = fenced(|| {
-        let decoder = ImageReader::with_format(Cursor::new(bytes), format).into_decoder()?;
-        match charge(decoder.dimensions(), budget, element) {
-            Ok(()) => DynamicImage::from_decoder(decoder).map(Ok),
-            Err(fault) => Ok(Err(fault)),
-        }
-    });
-    match decoded {
-        Ok(Ok(Ok(image))) => {
-            let rgba = image.into_rgba8();
-            let (width, height) = rgba.dimensions();
-            Ok(Ok(Image { name, width, height, rgba: rgba.into_raw() }))
-        }
-        Ok(Ok(Err(fault))) => Err(fault),
-        Ok(Err(ImageError::IoError(_))) => Err(invalid(element, format!("\"{name}\" is cut off"))),
-        Ok(Err(e)) => damaged(&e),
-        Err(panic) => damaged(&panic),
-    }
+fn decode_raster(
+    name: String,
+    raster: std::result::Result<Raster<'_>, String>,
+    budget: &Budget,
+    element: &str,
+) -> Result<Decoded> {
+    let damaged = |why: String| format!("image \"{name}\" is damaged and is left out: {why}");
+    let raster = match raster {
+        Ok(raster) => raster,
+        Err(why) => return Ok(Err(damaged(why))),
+    };
+    let (width, height) = raster.dimensions();
+    charge((width, height), budget, element)?;
+    Ok(match raster.rgba() {
+        Ok(rgba) => Ok(Image { name, width, height, rgba }),
+        Err(why) => Err(damaged(why)),
+    })
 }
 
 fn decode_ktx(name: String, bytes: &[u8], budget: &Budget, element: &str) -> Result<Decoded> {

@@ -54,10 +54,14 @@
 //!
 //! Everything else that breaks the specification and bears on the scene is an error.
 
+#[cfg(not(feature = "codecs"))]
+mod absent;
 mod animations;
+#[cfg_attr(not(feature = "codecs"), expect(dead_code))]
 mod buffers;
 mod container;
 mod document;
+#[cfg(feature = "codecs")]
 mod draco;
 mod error;
 mod extensions;
@@ -66,11 +70,13 @@ mod graph;
 mod images;
 mod info;
 mod instances;
+#[cfg(feature = "codecs")]
 mod ktx;
 mod lights;
 mod limits;
 mod materials;
 mod mesh;
+#[cfg(feature = "codecs")]
 mod meshopt;
 mod mtl;
 mod obj;
@@ -78,6 +84,8 @@ mod plain;
 mod ply;
 mod polygon;
 mod pose;
+mod raster;
+#[cfg_attr(not(feature = "codecs"), expect(dead_code))]
 mod schema;
 mod shading;
 mod stl;
@@ -90,6 +98,9 @@ pub use error::{Fault, LoadError};
 pub use extensions::{Treatment, extension_treatment};
 pub use info::{ChannelInfo, FileInfo, MorphInfo, SkinInfo};
 pub use limits::Limits;
+
+#[cfg(not(feature = "codecs"))]
+use absent::{draco, ktx, meshopt};
 
 use crate::animate::Animated;
 use document::Document;

@@ -1,8 +1,6 @@
 //! Materials, textures and embedded PNG images.
 
 use super::{Document, Result, WriteError};
-use image::ImageEncoder;
-use image::codecs::png::PngEncoder;
 use serde_json::{Value, json};
 use zfail_plan::scene::{AlphaMode, Filter, Image, Material, Scene, Specular, Texture, TextureRef, Wrap};
 
@@ -29,16 +27,23 @@ pub(super) fn write(document: &mut Document, scene: &Scene) -> Result<()> {
     Ok(())
 }
 
-fn png(image: &Image) -> std::result::Result<Vec<u8>, image::ImageError> {
-    let mut png = Vec::new();
-    let encoder = PngEncoder::new(&mut png);
-    if image.rgba.chunks_exact(4).all(|pixel| pixel[3] == 255) {
+fn png(image: &Image) -> std::result::Result<Vec<u8>, png::EncodingError> {
+    let opaque = image.rgba.chunks_exact(4).all(|pixel| pixel[3] == 255);
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, image.width, image.height);
+    encoder.set_color(if opaque { png::ColorType::Rgb } else { png::ColorType::Rgba });
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Fast);
+    encoder.set_filter(png::Filter::Adaptive);
+    let mut writer = encoder.write_header()?;
+    if opaque {
         let rgb: Vec<u8> = image.rgba.chunks_exact(4).flat_map(|pixel| &pixel[..3]).copied().collect();
-        encoder.write_image(&rgb, image.width, image.height, image::ExtendedColorType::Rgb8)?;
+        writer.write_image_data(&rgb)?;
     } else {
-        encoder.write_image(&image.rgba, image.width, image.height, image::ExtendedColorType::Rgba8)?;
+        writer.write_image_data(&image.rgba)?;
     }
-    Ok(png)
+    writer.finish()?;
+    Ok(file)
 }
 
 fn sampler(texture: &Texture) -> Value {

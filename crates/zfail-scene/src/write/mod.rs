@@ -38,7 +38,7 @@ pub enum WriteError {
         /// Index into [`Scene::images`].
         index: usize,
         /// The encoder's reason.
-        source: image::ImageError,
+        source: png::EncodingError,
     },
     /// A `.glb` file holds less than 4 GiB.
     #[error("the scene needs {bytes} bytes, a .glb file holds less than 4 GiB")]
