@@ -46,8 +46,8 @@ fn main() -> Result<()> {
     }
     put("image", "png", &picture(ImageFormat::Png))?;
     put("image", "jpeg", &picture(ImageFormat::Jpeg))?;
-    for (name, file) in models() {
-        put("model", name, &file)?;
+    for (target, name, file) in models() {
+        put(target, name, &file)?;
     }
     for (name, file) in packed_buffers() {
         put("meshopt", name, &file)?;
@@ -368,11 +368,14 @@ fn extensions() -> Gltf {
     g
 }
 
-/// A triangle in each of the formats that are not glTF, behind the byte that chooses the format.
-fn models() -> Vec<(&'static str, Vec<u8>)> {
-    let obj = "mtllib a.mtl\no a\ng b\nv 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\n\
-               usemtl red\ns 1\nf 1/1/1 2/2/1 3/3/1\nf 2//1 -1//1 3//1\nf 1 2 4 3\n";
+/// A triangle in each of the formats that are not glTF, and what programs make of them.
+fn models() -> Vec<(&'static str, &'static str, Vec<u8>)> {
+    let obj = "mtllib case.mtl\no a\ng b\nv 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\n\
+               usemtl red\ns 1\nf 1/1/1 2/2/1 3/3/1\nf 2//1 -1//1 \\\n3//1\nusemtl\nf 1 2 4 3 # a quad\nl 1 2\n\0\0\
+               newmtl red\nKd 1 0.5 0\nd 0.5\nmap_Kd -s 2 2 -o .5 case.mtl\n";
+    let wide: Vec<u8> = "\u{feff}v 1e+5 2. 0\rv 0 1 +.5\rv nan 0 0\rf 1 2 2\rf 1 2 3\r".encode_utf16().flat_map(u16::to_le_bytes).collect();
     let stl = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
+    let odd = stl.replace('\n', " ").replace("endloop", "vertex 1 1 0 end loop") + stl;
     let mut packed = vec![0; 80];
     packed.extend(1_u32.to_le_bytes());
     packed.extend([0.0, 0.0, 1.0].iter().chain(TRIANGLE.as_flattened()).flat_map(|x: &f32| x.to_le_bytes()));
@@ -384,7 +387,10 @@ fn models() -> Vec<(&'static str, Vec<u8>)> {
              property list uchar int vertex_indices\nend_header\n"
         )
     };
-    let ascii = header("ascii") + "0 0 0 255 0 0\n1 0 0 0 255 0\n0 1 0 0 0 255\n3 0 1 2\n";
+    let ascii = header("ascii") + "0 0 0 255 0 0\n1 0 0 0 255 0\n# a\n\n0 1 0 0 0 255\n3 0 1 2\n";
+    let strips = "ply\rformat ascii 1.0\rvendor\relement tristrips 1\rproperty list int int vertex_indices\relement vertex 4\r\
+                  property double nx\rproperty list uchar float spare\rproperty double x\rproperty double y\rproperty double z\r\
+                  end_header\r8 0 1 2 3 -1 1 2 3\r0 1 7 0 0 0\r0 0 1 0 0\r0 0 0 1 0\r0 0 1e6 1.1 0\r";
     let ply = |format: &str, float: fn(f32) -> [u8; 4], int: fn(i32) -> [u8; 4]| {
         let mut file = header(format).into_bytes();
         for corner in TRIANGLE {
@@ -394,14 +400,16 @@ fn models() -> Vec<(&'static str, Vec<u8>)> {
         file.extend([0, 1, 2].into_iter().flat_map(int));
         file
     };
-    let with = |format: u8, file: &[u8]| [&[format], file].concat();
     vec![
-        ("obj", with(0, obj.as_bytes())),
-        ("stl-ascii", with(1, stl.as_bytes())),
-        ("stl-binary", with(1, &packed)),
-        ("ply-ascii", with(2, ascii.as_bytes())),
-        ("ply-little", with(2, &ply("binary_little_endian", f32::to_le_bytes, i32::to_le_bytes))),
-        ("ply-big", with(2, &ply("binary_big_endian", f32::to_be_bytes, i32::to_be_bytes))),
+        ("obj", "faces", obj.into()),
+        ("obj", "wide", wide),
+        ("stl", "ascii", stl.into()),
+        ("stl", "odd", odd.into()),
+        ("stl", "binary", packed),
+        ("ply", "ascii", ascii.into()),
+        ("ply", "strips", strips.into()),
+        ("ply", "little", ply("binary_little_endian", f32::to_le_bytes, i32::to_le_bytes)),
+        ("ply", "big", ply("binary_big_endian", f32::to_be_bytes, i32::to_be_bytes)),
     ]
 }
 

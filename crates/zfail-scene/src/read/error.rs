@@ -26,14 +26,14 @@ pub enum Fault {
     #[error("is not a glTF 2.0 file: {0}; the other formats that are read end in .obj, .stl or .ply")]
     NotGltf(String),
     /// An .obj, .stl or .ply file that its format does not allow, or that has nothing to draw.
-    #[error("{element}: {problem}; export the file again as {format} or as glTF")]
+    #[error("{element}: {problem}; {remedy}")]
     Malformed {
-        /// Name of the format.
-        format: &'static str,
         /// Line or element.
         element: String,
         /// What is wrong.
         problem: String,
+        /// What helps.
+        remedy: &'static str,
     },
     /// The JSON breaks the specification in a way that leaves no doubt-free repair.
     #[error("{element}: {problem}; export the file again, or see what the Khronos glTF validator says about it")]
@@ -77,8 +77,8 @@ pub(super) fn invalid(element: impl AsRef<str>, problem: impl AsRef<str>) -> Fau
     Fault::Invalid { element: one_line(element.as_ref()), problem: one_line(problem.as_ref()) }
 }
 
-pub(super) fn malformed(format: &'static str, element: impl AsRef<str>, problem: impl AsRef<str>) -> Fault {
-    Fault::Malformed { format, element: one_line(element.as_ref()), problem: one_line(problem.as_ref()) }
+pub(super) fn malformed(element: impl AsRef<str>, problem: impl AsRef<str>, remedy: &'static str) -> Fault {
+    Fault::Malformed { element: one_line(element.as_ref()), problem: one_line(problem.as_ref()), remedy }
 }
 
 /// `text`, which may quote anything from a file, fit for one line on a terminal: without control characters, and

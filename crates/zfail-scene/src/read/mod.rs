@@ -3,7 +3,7 @@
 //! Data flow one way: `container` (bytes to JSON and binary chunk) -> `schema` (typed JSON) -> `extensions` and
 //! `validate` (nothing is trusted before) -> `variants` -> `document` (`buffers` with `meshopt`, `draco`, then accessors) -> `images`
 //! with `ktx`, `materials` -> `graph` (world transforms) -> `animations` -> `surface` -> `shading` -> `pose` -> `mesh`
-//! -> `instances`, `lights`. The other formats, `obj` with `mtl`, `stl` and `ply`, become a glTF document first (`plain`).
+//! -> `instances`, `lights`. The other formats, `obj`, `stl` and `ply`, become a glTF document first (`plain`).
 //!
 //! Whatever the bytes are, the result is a scene that satisfies the scene types' invariants or a [`LoadError`]; what
 //! was repaired or left out is in [`Scene::notices`].
@@ -33,9 +33,12 @@
 //!
 //! # Other formats
 //! - .obj with .mtl: groups become one mesh. y is up. Missing libraries and textures leave a surface grey or plain.
-//! - .stl, binary or ASCII, and .ply with polygons, normals, colours (sRGB) and texture coordinates: z is up.
+//! - .stl, binary or ASCII, and .ply with polygons or strips, normals, colours (sRGB) and texture coordinates: z is up.
 //! - None has units: one unit is one metre. All surfaces are shown from both sides. Polygons are cut
-//!   into triangles, concave ones of up to 128 corners without overlaps.
+//!   into triangles, concave ones without overlaps.
+//! - Text is in any superset of ASCII, or UTF-16; lines end in LF, CR LF or CR. A face, an attribute of a face or a line
+//!   of a library that cannot be used is left out, and counted in a notice.
+//! - A model that lies far from its file's origin keeps that origin in double precision.
 //!
 //! # Extras
 //! What glTF has no word for, in the extras of nodes:
@@ -78,7 +81,6 @@ mod materials;
 mod mesh;
 #[cfg(feature = "codecs")]
 mod meshopt;
-mod mtl;
 mod obj;
 mod plain;
 mod ply;

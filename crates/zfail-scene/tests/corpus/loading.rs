@@ -6,6 +6,7 @@
 use serde_json::{Value, json};
 use std::cell::OnceCell;
 use std::fs;
+use std::path::PathBuf;
 use tempfile::TempDir;
 use zfail_plan::scene::Scene;
 use zfail_scene::{Limits, complete, load_animated, write};
@@ -20,14 +21,16 @@ pub const MEMORY: usize = 2 * (64 << 20);
 pub type Target = fn(&[u8]);
 
 /// Every fuzz target.
-pub const TARGETS: [(&str, Target); 7] = [
+pub const TARGETS: [(&str, Target); 9] = [
     ("glb", glb),
     ("gltf", gltf),
     ("scene", scene),
     ("image", image),
     ("draco", draco),
     ("meshopt", meshopt),
-    ("model", model),
+    ("obj", obj),
+    ("ply", ply),
+    ("stl", stl),
 ];
 
 /// A `.glb` file.
@@ -136,11 +139,21 @@ pub fn meshopt(bytes: &[u8]) {
     load("glb", &container(&gltf, &binary(&[packed])));
 }
 
-/// A byte that chooses the format, and a file of it.
-pub fn model(bytes: &[u8]) {
-    if let Some((&format, file)) = bytes.split_first() {
-        load(["obj", "stl", "ply"][usize::from(format % 3)], file);
-    }
+/// An `.obj` file, two zero bytes, and the library `case.mtl` beside it.
+pub fn obj(bytes: &[u8]) {
+    let end = bytes.windows(2).position(|pair| pair == [0, 0]).unwrap_or(bytes.len());
+    fs::write(path("mtl"), bytes.get(end + 2..).unwrap_or_default()).expect("a file beside it");
+    load("obj", &bytes[..end]);
+}
+
+/// A `.ply` file.
+pub fn ply(bytes: &[u8]) {
+    load("ply", bytes);
+}
+
+/// An `.stl` file.
+pub fn stl(bytes: &[u8]) {
+    load("stl", bytes);
 }
 
 /// A glTF document with one triangle, whose corners are at the begin of the buffer, and a buffer view for each of `more`.
@@ -191,13 +204,18 @@ pub fn container(json: &Value, binary: &[u8]) -> Vec<u8> {
     [b"glTF".as_slice(), &2_u32.to_le_bytes(), &(12 + chunks.len() as u32).to_le_bytes(), &chunks].concat()
 }
 
-/// Loads `bytes` as a file with this extension, and checks what is made of it.
-fn load(extension: &str, bytes: &[u8]) {
+/// The file `case` with this extension, in a folder that it shares with no other thread.
+fn path(extension: &str) -> PathBuf {
     thread_local!(static FOLDER: OnceCell<TempDir> = const { OnceCell::new() });
-    let file = FOLDER.with(|folder| {
+    FOLDER.with(|folder| {
         let folder = folder.get_or_init(|| TempDir::new().expect("a temporary folder"));
         folder.path().join(format!("case.{extension}"))
-    });
+    })
+}
+
+/// Loads `bytes` as a file with this extension, and checks what is made of it.
+fn load(extension: &str, bytes: &[u8]) {
+    let file = path(extension);
     fs::write(&file, bytes).expect("a file in it");
     match load_animated(&file, &LIMITS) {
         Ok((mut animated, _)) => {
