@@ -143,6 +143,7 @@ fn sampler() -> Scene {
         ambient: [0.1, 0.2, 0.3],
         background: [0.3, 0.2, 0.1],
         notices: vec![],
+        ..Scene::default()
     }
 }
 

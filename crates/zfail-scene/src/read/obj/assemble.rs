@@ -133,11 +133,11 @@ fn sort_faces(
         drawn.push(Drawn { corners: range, part });
     }
     for (count, problem) in [
-        (beyond, "refer to normals or texture coordinates that are not there: shown without them"),
-        (partial, "have normals or texture coordinates at some corners only: shown without them"),
+        (beyond, "with normals or texture coordinates that are not there: shown without them"),
+        (partial, "with normals or texture coordinates at some corners only: shown without them"),
         (
             if colors.is_empty() { 0 } else { colorless },
-            "have vertices without the colour that others have: white there",
+            "with vertices that lack the colour that others have: white there",
         ),
     ] {
         if count > 0 {

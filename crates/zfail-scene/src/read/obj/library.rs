@@ -54,16 +54,19 @@ impl<'a> Library<'a> {
     /// Reads the libraries that `names`, which follow one `mtllib`, mean: one whose name has spaces in it, or several. One that
     /// is missing leaves its surfaces grey, since the geometry is sound.
     pub fn load(&mut self, names: &[u8]) -> Result<()> {
-        if self.asked.len() >= MAX_LIBRARIES || !self.asked.insert(names.to_vec()) {
+        if self.asked.len() == MAX_LIBRARIES {
             return Ok(());
         }
-        let one =
-            [names, without_comment(names)].into_iter().find(|name| self.folder.find(name, Path::new("")).is_ok());
+        let here = Path::new("");
+        let one = [names, without_comment(names)].into_iter().find(|name| self.folder.find(name, here).is_ok());
         for name in one.map_or_else(|| several(without_comment(names)), |name| vec![name]) {
-            if self.loaded.len() >= MAX_LIBRARIES {
+            if self.asked.len() == MAX_LIBRARIES {
                 break;
             }
-            let read = match self.folder.find(name, Path::new("")) {
+            if !self.asked.insert(name.to_vec()) {
+                continue;
+            }
+            let read = match self.folder.find(name, here) {
                 Ok(path) if self.loaded.contains(&path) => continue,
                 Ok(path) => self.folder.read(&path)?.map(|bytes| (path, bytes)),
                 Err(problem) => Err(problem.into()),
@@ -71,7 +74,6 @@ impl<'a> Library<'a> {
             match read {
                 Ok((path, bytes)) => self.add(name, path, &bytes)?,
                 Err(problem) => {
-                    self.loaded.insert(PathBuf::from(shown(name).into_owned()));
                     self.note(format!("material library `{}` {problem}: its materials are shown grey", shown(name)));
                 }
             }
@@ -160,17 +162,18 @@ fn without_comment(name: &[u8]) -> &[u8] {
 
 /// The names in `names`, each of which ends in `.mtl` and may hold spaces.
 fn several(names: &[u8]) -> Vec<&[u8]> {
+    const ENDING: &[u8] = b".mtl";
     let mut list = Vec::new();
     let mut start = 0;
     for end in 0..=names.len() {
-        let name = trim(&names[start..end]);
-        let ends = end == names.len() || names[end] <= b' ';
         let last = end == names.len();
-        if ends && !name.is_empty() && (last || name.to_ascii_lowercase().ends_with(b".mtl")) {
-            list.push(name);
+        let ends = !last && names[end] <= b' ' && names[start..end].len() >= ENDING.len();
+        if last || ends && names[end - ENDING.len()..end].eq_ignore_ascii_case(ENDING) {
+            list.push(trim(&names[start..end]));
             start = end;
         }
     }
+    list.retain(|name| !name.is_empty());
     list
 }
 

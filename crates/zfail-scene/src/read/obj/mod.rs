@@ -40,14 +40,16 @@ pub(super) fn read(bytes: &[u8], folder: &Path, budget: &Budget) -> Result<Plain
     }
     notices.extend(losses.notices());
     if strokes > 0 {
-        notices
-            .push(format!("{} of points and lines are not drawn: they have no surface", counted(strokes, "statement")));
+        notices.push(format!(
+            "{} of points and lines: not drawn, since they have no surface",
+            counted(strokes, "statement")
+        ));
     }
     if freeform > 0 {
-        notices.push(format!("{} not drawn: only polygons are", counted(freeform, "free-form surface")));
+        notices.push(format!("{}: not drawn, since only polygons are", counted(freeform, "free-form surface")));
     }
     if calls > 0 {
-        notices.push(format!("{} of other files are not followed", counted(calls, "call")));
+        notices.push(format!("{} of other files: not followed", counted(calls, "call")));
     }
     let library::Materials { materials, textures, pictures, notices: of_materials } = library.finish()?;
     notices.extend(of_materials);

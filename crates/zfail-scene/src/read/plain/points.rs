@@ -39,7 +39,7 @@ mod tests {
     #[test]
     fn only_what_is_far_and_would_be_rounded_moves() {
         let origin = |points: &[[f64; 3]]| origin(points.iter().copied());
-        assert_eq!(origin(&[[0.1, 100.1, 5e6], [1.1, 100.3, 5e6]]), [0.0, 100.2, 0.0]);
+        assert_eq!(origin(&[[0.1, 100.1, 5e6], [1.1, 100.3, 5e6]]), [0.0, f64::midpoint(100.1, 100.3), 0.0]);
         assert_eq!(origin(&[[442_307.37, 0.0, -0.1], [442_315.37, 1.0, 0.1]]), [442_311.37, 0.0, 0.0]);
         assert_eq!(origin(&[]), [0.0; 3]);
         assert_eq!(relative(&[442_307.37, 0.5, 0.0], &[442_311.37, 0.0, 0.0]), [-4.0, 0.5, 0.0]);

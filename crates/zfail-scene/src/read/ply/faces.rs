@@ -24,7 +24,7 @@ pub(super) const MISSING: u32 = u32::MAX;
 
 /// What corners and faces are charged with, the triangles that they become included.
 const CORNER_COST: u64 = 2 * (4 + 12);
-const FACE_COST: u64 = 2 * 4;
+const FACE_COST: u64 = 2 * 4 + 16;
 /// How much is charged at once.
 const BLOCK: u64 = 1 << 16;
 

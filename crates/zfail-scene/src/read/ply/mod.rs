@@ -10,7 +10,7 @@ mod vertices;
 use super::error::{Fault, Result, malformed};
 use super::limits::Budget;
 use super::plain::folder::Folder;
-use super::plain::losses::{Flaw, flaw};
+use super::plain::losses::{Flaw, counted, flaw};
 use super::plain::text::{decode, shown};
 use super::plain::{Part, Picture, Plain, Texture, Up, grey, not_of_format, points, texture};
 use super::polygon::Triangulator;
@@ -138,7 +138,7 @@ fn picture(header: &Header<'_>, folder: &Path, budget: &Budget, notices: &mut Ve
 }
 
 fn assemble(vertices: Vertices, faces: Faces, notices: &mut Vec<String>) -> Result<([f64; 3], Part)> {
-    let Vertices { positions: points, normals, uv, colors } = vertices;
+    let Vertices { positions: points, normals, uv, colors, short } = vertices;
     let Faces { corners, ends, odd, mut losses } = faces;
     let starts = [0].into_iter().chain(ends.iter().copied());
     let faces = starts.zip(&ends).map(|(start, &end)| &corners[start as usize..end as usize]);
@@ -165,6 +165,9 @@ fn assemble(vertices: Vertices, faces: Faces, notices: &mut Vec<String>) -> Resu
         }));
     }
     notices.extend(losses.notices());
+    if short > 0 {
+        notices.push(format!("{} of vertices with fewer values than the header says", counted(short, "line")));
+    }
     let origin = points::origin(drawn.iter().copied().flatten().map(|v| points[*v as usize]));
     let near = |p: &[f64; 3]| if points::is_usable(p) { points::relative(p, &origin) } else { [0.0; 3] };
     let positions: Vec<[f32; 3]> = points.iter().map(near).collect();

@@ -17,6 +17,8 @@ pub(super) struct Vertices {
     pub uv: Option<Vec<[f32; 2]>>,
     /// Linear RGBA.
     pub colors: Option<Vec<[f32; 4]>>,
+    /// How many rows have ended early.
+    pub short: usize,
 }
 
 /// Names of properties, by where their values stand in a row.
@@ -60,6 +62,7 @@ pub(super) fn read(body: &mut Body<'_>, element: &Element<'_>, budget: &Budget) 
         normals: has(NORMAL).then(Vec::new),
         uv: has(UV).then(Vec::new),
         colors: has(COLOR).then(Vec::new),
+        short: 0,
     };
     for i in 0..element.count {
         if i % BLOCK == 0 {
@@ -70,8 +73,11 @@ pub(super) fn read(body: &mut Body<'_>, element: &Element<'_>, budget: &Budget) 
         let mut row = [0.0; 12];
         row[..3].fill(f64::NAN);
         body.begin();
-        if fill(&mut row, body, element, &slot_of).is_err() && !body.goes_on() {
-            return Err(cut_off(element, i));
+        if fill(&mut row, body, element, &slot_of).is_err() {
+            if !body.goes_on() {
+                return Err(cut_off(element, i));
+            }
+            vertices.short += 1;
         }
         body.end();
         vertices.push(&row);

@@ -49,11 +49,13 @@ impl<'a> Layout<'a> {
         // A triangle is three corners in double precision, and three in single precision with their indices.
         budget.charge(self.records.len() as u64, 72 + 48, || "the file".into())?;
         let float = |b: &[u8; 4]| f64::from(f32::from_le_bytes(*b));
-        let corners = self.records.iter().flat_map(|record| record[12..48].as_chunks::<12>().0);
-        let corners = corners.map(|corner| {
-            let [x, y, z] = [0, 1, 2].map(|c| corner.as_chunks().0[c]);
-            [float(&x), float(&y), float(&z)]
-        });
+        let mut corners = Vec::with_capacity(3 * self.records.len());
+        for record in self.records {
+            corners.extend(record[12..48].as_chunks::<12>().0.iter().map(|corner| {
+                let [x, y, z] = [0, 1, 2].map(|c| corner.as_chunks().0[c]);
+                [float(&x), float(&y), float(&z)]
+            }));
+        }
         let mut notices = Vec::new();
         if self.said != self.records.len() {
             notices.push(format!(
@@ -62,7 +64,7 @@ impl<'a> Layout<'a> {
                 self.records.len()
             ));
         }
-        Ok(Facets { corners: corners.collect(), ends: Vec::new(), notices })
+        Ok(Facets { corners, ends: Vec::new(), notices })
     }
 }
 

@@ -8,7 +8,7 @@ mod binary;
 
 use super::error::{Result, malformed};
 use super::limits::Budget;
-use super::plain::losses::{Flaw, Losses, flaw};
+use super::plain::losses::{Flaw, Losses, counted, flaw};
 use super::plain::{Part, Plain, Up, grey, not_of_format, points, text};
 use super::polygon::Triangulator;
 use binary::Layout;
@@ -46,7 +46,7 @@ fn assemble(facets: Facets, budget: &Budget) -> Result<Plain> {
     let Facets { corners, ends, mut notices } = facets;
     let count = u32::try_from(corners.len()).map_err(|_| budget.exceeded("the file".into()))?;
     let mut losses = Losses::default();
-    let mut faces = Vec::new();
+    let mut faces = Vec::with_capacity(corners.len() / 3);
     let mut face = |start: u32, end: u32, line: u32| match flaw(start..end, &corners) {
         None => faces.push(start..end),
         Some(flaw) => {
@@ -82,8 +82,7 @@ fn assemble(facets: Facets, budget: &Budget) -> Result<Plain> {
     }
     notices.extend(losses.notices());
     if polygons > 0 {
-        let problem = "facets have more than three corners, which STL does not know: taken as polygons";
-        notices.push(format!("{polygons} {problem}"));
+        notices.push(format!("{} of more than three corners: taken as polygons", counted(polygons, "facet")));
     }
     notices.push("STL has neither axes nor units: z is taken as up, and one unit as one metre".into());
     Ok(Plain {

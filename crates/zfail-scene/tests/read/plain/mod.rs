@@ -7,7 +7,7 @@ mod stl;
 
 use crate::build::assert_sound;
 use crate::hostile::Random;
-use obj::{MTL, OBJ};
+use obj::OBJ;
 use ply::{PLY, binary_ply};
 use std::fs;
 use std::path::Path;

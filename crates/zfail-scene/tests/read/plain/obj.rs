@@ -39,7 +39,7 @@ Pm 1
 #[test]
 fn obj_with_materials() {
     let scene = loaded(&[("a b.OBJ", OBJ.as_bytes()), ("sub/wood.mtl", MTL.as_bytes()), ("sub/bark.png", &png())]);
-    assert_eq!(scene.notices[0], "2 statements of points and lines are not drawn: they have no surface");
+    assert_eq!(scene.notices[0], "2 statements of points and lines: not drawn, since they have no surface");
     assert_eq!(scene.notices[1..], ["OBJ has neither axes nor units: y is taken as up, and one unit as one metre"]);
     assert_eq!((scene.meshes.len(), scene.images.len(), scene.name.as_str()), (1, 1, "a b"));
     let mesh = &scene.meshes[0];
@@ -126,7 +126,7 @@ fn what_cannot_be_drawn_is_left_out() {
         &format!("1 face with a vertex that is not there is left out (line 6: refers to vertex 0, {there}"),
     );
     let huge = "9223372036854775807";
-    let missing = format!("line 6: refers to vertex 4294967295, {there}");
+    let missing = format!("line 6: refers to vertex {huge}, {there}");
     with(&format!("f 1 2 {huge}"), &format!("1 face with a vertex that is not there is left out ({missing}"));
     with("f 1 2 x 3", "1 face that cannot be read is left out (line 6: `x` is no corner)");
     let nowhere = |n: &str| format!("{n} with a vertex that is not finite, or beyond 5e14, ");
@@ -134,9 +134,9 @@ fn what_cannot_be_drawn_is_left_out() {
         let left_out = nowhere("2 triangles") + "are left out (line 7)";
         with(&format!("v {vertex}\nf 1 2 5 3\n"), &left_out);
     }
-    with("p 1\nl 1 2 3\n", "2 statements of points and lines are not drawn: they have no surface");
-    with("cstype bezier\nsurf 0 1 0 1 1 2 3 4\nend\n", "1 free-form surface not drawn: only polygons are");
-    with("call other.obj 1\n", "1 call of other files are not followed");
+    with("p 1\nl 1 2 3\n", "2 statements of points and lines: not drawn, since they have no surface");
+    with("cstype bezier\nsurf 0 1 0 1 1 2 3 4\nend\n", "1 free-form surface: not drawn, since only polygons are");
+    with("call other.obj 1\n", "1 call of other files: not followed");
 }
 
 #[test]
@@ -155,7 +155,7 @@ fn attributes_cost_no_more_than_themselves() {
     let with = |faces: &str| loaded(&[("a.obj", format!("{text}{faces}").as_bytes())]);
     let whole = with("f 1/1/1 2/1/1 3/1/1\n");
     assert_eq!((whole.meshes[0].normals[0], whole.meshes[0].uv0[0]), ([0.0, 0.0, -1.0], [0.25, 0.5]));
-    let beyond = "1 face refer to normals or texture coordinates that are not there: shown without them";
+    let beyond = "1 face with normals or texture coordinates that are not there: shown without them";
     for corner in ["3//9", "3//-2", "3//0", "3//x"] {
         let scene = with(&format!("f 1//1 2//1 {corner}\nf 1/1/1 3/1/1 4/1/1\n"));
         assert_eq!(scene.notices[0], beyond, "{corner}");
@@ -178,7 +178,7 @@ fn corners_that_are_alike_share_a_vertex() {
 fn colours() {
     let text = "v 0 0 0\nv 0 0 1 0 0 1\nv 0 1 0\nv 1 0 0 1 .6 .3\nf 1 2 3\nf 1 4 3\nf 1 3 1\n";
     let scene = loaded(&[("a.obj", text.as_bytes())]);
-    assert_eq!(scene.notices[0], "3 faces have vertices without the colour that others have: white there");
+    assert_eq!(scene.notices[0], "3 faces with vertices that lack the colour that others have: white there");
     let mesh = &scene.meshes[0];
     let color = |t: usize, c: usize| mesh.colors[mesh.triangles[t][c] as usize];
     assert_eq!((color(0, 0), color(0, 1), color(1, 1)[0]), ([1.0; 4], [0.0, 0.0, 1.0, 1.0], 1.0));

@@ -180,7 +180,7 @@ fn what_cannot_be_drawn_is_left_out() {
     for vertex in ["nan 1 0", "0 1e16 0", "1 x 0", "1 2"] {
         let text = PLY.replace("1 1 0 255 0 0 1 1", vertex).replace("3 0 2 3", "3 0 1 3");
         let (triangles, notices) = told(&[("a.ply", text.as_bytes()), ("bark.png", &png())]);
-        assert_eq!((triangles, notices), (1, vec![nowhere.to_owned()]), "{vertex}");
+        assert_eq!((triangles, notices[0].as_str()), (1, nowhere), "{vertex}");
     }
 }
 
@@ -246,6 +246,7 @@ fn short_rows_are_not_read_to_the_end() {
     let text = TRIANGLE.replace("element face", &format!("{properties}element more 20000\n{properties}element face"));
     let (head, tail) = text.split_at(text.find("3 0 1 2").unwrap());
     let start = std::time::Instant::now();
-    fails(&[("a.ply", (head.to_owned() + &"1\n".repeat(20_000) + tail).as_bytes())], "vertex that is not finite");
+    let (triangles, notices) = told(&[("a.ply", (head.to_owned() + &"1\n".repeat(20_000) + tail).as_bytes())]);
+    assert_eq!((triangles, notices), (1, vec!["3 lines of vertices with fewer values than the header says".into()]));
     assert!(start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
 }

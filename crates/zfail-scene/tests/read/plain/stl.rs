@@ -27,7 +27,7 @@ fn what_cannot_be_drawn_is_left_out() {
         assert_eq!((drawn, notices.as_slice()), (triangles, [expected.to_owned()].as_slice()), "{facet}");
     };
     with("vertex 0 0 0\nvertex 1 0 0", 2, "1 face of fewer than three corners is left out (line 14)");
-    let polygons = "1 facets have more than three corners, which STL does not know: taken as polygons";
+    let polygons = "1 facet of more than three corners: taken as polygons";
     with("vertex 0 0 0 vertex 1 0 0 vertex 1 1 0 vertex 0 1 0", 4, polygons);
     let nowhere = "1 triangle with a vertex that is not finite, or beyond 5e14, is left out";
     with("vertex 0 0 0\nvertex 1 nan 0\nvertex 1 1 0", 2, &format!("{nowhere} (facet 1)"));
@@ -67,7 +67,7 @@ fn binary_files() {
     let nowhere = "1 triangle with a vertex that is not finite, or beyond 5e14, is left out (facet 1)".to_owned();
     assert_eq!(told(&[("a.stl", &binary(b"", 2, &broken))]), (1, vec![nowhere]));
     fails(&[("a.stl", b"")], "neither ASCII");
-    fails(&[("a.stl", STL[..STL.find("vertex 0 1").unwrap()].as_bytes())], "ends within a facet; its end is missing");
+    fails(&[("a.stl", &STL.as_bytes()[..STL.find("vertex 0 1").unwrap()])], "ends within a facet; its end is missing");
 }
 
 #[test]
