@@ -373,7 +373,10 @@ fn models() -> Vec<(&'static str, &'static str, Vec<u8>)> {
     let obj = "mtllib case.mtl\no a\ng b\nv 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\n\
                usemtl red\ns 1\nf 1/1/1 2/2/1 3/3/1\nf 2//1 -1//1 \\\n3//1\nusemtl\nf 1 2 4 3 # a quad\nl 1 2\n\0\0\
                newmtl red\nKd 1 0.5 0\nd 0.5\nmap_Kd -s 2 2 -o .5 case.mtl\n";
-    let wide: Vec<u8> = "\u{feff}v 1e+5 2. 0\rv 0 1 +.5\rv nan 0 0\rf 1 2 2\rf 1 2 3\r".encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let wide: Vec<u8> = "\u{feff}v 1e+5 2. 0\rv 0 1 +.5\rv nan 0 0\rf 1 2 2\rf 1 2 3\r"
+        .encode_utf16()
+        .flat_map(u16::to_le_bytes)
+        .collect();
     let stl = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
     let odd = stl.replace('\n', " ").replace("endloop", "vertex 1 1 0 end loop") + stl;
     let mut packed = vec![0; 80];

@@ -98,7 +98,7 @@ fn sort_faces(
     let Statements { positions, colors, uv, normals, corners, faces, .. } = statements;
     let mut drawn = Vec::with_capacity(faces.len());
     let (mut kinds, mut known) = (Vec::new(), BTreeMap::new());
-    let (mut beyond, mut partial, mut colorless) = (0, 0, 0);
+    let (mut broken, mut partial, mut colorless) = (0, 0, 0);
     let mut start = 0;
     for face in faces {
         let range = start..face.end as usize;
@@ -109,14 +109,15 @@ fn sort_faces(
             losses.add(flaw, triangles, || describe(flaw, face, statements));
             continue;
         }
-        let mut whole = |which: usize, count: usize| {
+        let mut whole = |which: usize, there: &dyn Fn(usize) -> bool| {
             let named = corners.iter().filter(|corner| corner[which] != ABSENT).count();
-            let there = corners.iter().filter(|corner| (corner[which] as usize) < count).count();
-            beyond += usize::from(there < named);
-            partial += usize::from(there == named && 0 < there && there < corners.len());
-            there == corners.len()
+            let usable = corners.iter().filter(|corner| there(corner[which] as usize)).count();
+            broken += usize::from(usable < named);
+            partial += usize::from(usable == named && 0 < usable && usable < corners.len());
+            usable == corners.len()
         };
-        let (uv, normals) = (whole(1, uv.len()), whole(2, normals.len()));
+        let uv = whole(1, &|i| uv.get(i).is_some_and(|uv| uv.iter().all(|x| x.is_finite())));
+        let normals = whole(2, &|i| normals.get(i).is_some_and(|normal| normal.iter().all(|x| x.is_finite())));
         let colored = |[v, ..]: &&[u32; 3]| colors.get(*v as usize).is_some_and(|c| c[0].is_finite());
         let colored = if colors.is_empty() { 0 } else { corners.iter().filter(colored).count() };
         colorless += usize::from(colored < corners.len());
@@ -133,7 +134,7 @@ fn sort_faces(
         drawn.push(Drawn { corners: range, part });
     }
     for (count, problem) in [
-        (beyond, "with normals or texture coordinates that are not there: shown without them"),
+        (broken, "with normals or texture coordinates that are not there, or not finite: shown without them"),
         (partial, "with normals or texture coordinates at some corners only: shown without them"),
         (
             if colors.is_empty() { 0 } else { colorless },

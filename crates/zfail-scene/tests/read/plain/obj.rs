@@ -151,12 +151,12 @@ fn nothing_to_draw() {
 
 #[test]
 fn attributes_cost_no_more_than_themselves() {
-    let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 -1\nvt 0.25 0.5\n";
+    let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 -1\nvn -1.#IND 0 1\nvt 0.25 0.5\n";
     let with = |faces: &str| loaded(&[("a.obj", format!("{text}{faces}").as_bytes())]);
     let whole = with("f 1/1/1 2/1/1 3/1/1\n");
     assert_eq!((whole.meshes[0].normals[0], whole.meshes[0].uv0[0]), ([0.0, 0.0, -1.0], [0.25, 0.5]));
-    let beyond = "1 face with normals or texture coordinates that are not there: shown without them";
-    for corner in ["3//9", "3//-2", "3//0", "3//x"] {
+    let beyond = "1 face with normals or texture coordinates that are not there, or not finite: shown without them";
+    for corner in ["3//9", "3//-3", "3//0", "3//x", "3//2"] {
         let scene = with(&format!("f 1//1 2//1 {corner}\nf 1/1/1 3/1/1 4/1/1\n"));
         assert_eq!(scene.notices[0], beyond, "{corner}");
         let mesh = &scene.meshes[0];
