@@ -2,9 +2,10 @@
 //! not do it (McGuire et al. 2003, section 8).
 
 use crate::attribute_pass::AttributePass;
+use crate::backdrop_pass::{BackdropPass, Behind};
 use crate::develop_pass::DevelopPass;
 use crate::exposure::ExposureMeter;
-use crate::forward_pass::{Attachments, ForwardPass, Shadows, Step};
+use crate::forward_pass::{self, ForwardPass, Shadows, Step};
 use crate::fragment_counter::FragmentCounter;
 use crate::frame::{FrameData, Shading};
 use crate::gpu_data::LightRecord;
@@ -14,6 +15,7 @@ use crate::pipeline::{cleared, cleared_depth, continued, read_only};
 use crate::scene::SceneOnGpu;
 use crate::shadow_pass::ShadowPass;
 use crate::stats::{FrameStats, LightFigures};
+use crate::surroundings::Surroundings;
 use crate::targets::{Attributes, Targets};
 use crate::timing::Timer;
 use crate::verdict_pass::{self, Verdict, VerdictPass, VerdictTargets};
@@ -25,7 +27,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::time::Instant;
 use zfail::{Counting, LightStats};
-use zfail_plan::scene::{LightKind, Pose, Scene};
+use zfail_plan::scene::{Light, LightKind, Pose, Scene, Sky};
 use zfail_plan::view::View;
 
 /// A scene on the device, ready to be rendered from any view.
@@ -36,6 +38,7 @@ pub struct Renderer<'g> {
     scene: SceneOnGpu,
     frame: FrameData,
     forward: ForwardPass,
+    backdrop: BackdropPass,
     /// By sample count and whether verdicts become bits.
     verdicts: HashMap<(u32, bool), VerdictPass>,
     /// By sample count.
@@ -80,6 +83,7 @@ impl<'g> Renderer<'g> {
             scene,
             layouts,
             forward: ForwardPass::default(),
+            backdrop: BackdropPass::default(),
             verdicts: HashMap::new(),
             darkroom: HashMap::new(),
             targets: None,
@@ -110,6 +114,14 @@ impl<'g> Renderer<'g> {
             self.frame.set_shapes(self.gpu, &self.layouts, &self.scene.shapes.buffer);
         }
         Ok(())
+    }
+
+    /// Takes ambient light, background, sky and ground of `scene`.
+    ///
+    /// # Errors
+    /// If the ground is no disc. The old surroundings stay then.
+    pub fn set_surroundings(&mut self, scene: &Scene) -> Result<(), RenderError> {
+        self.scene.set_surroundings(self.gpu, scene)
     }
 
     /// Takes from `scene`, which otherwise is the one that was uploaded, in its present pose, which instances cast shadows.
@@ -192,15 +204,19 @@ impl<'g> Renderer<'g> {
 
         let exposed = Exposed::new(&self.scene, &chosen, settings.exposure, view);
         let precision = exposed.precision(&self.scene, finish);
-        let kinds: Vec<LightKind> =
-            chosen.iter().map(|&l| lights::effective(&self.scene.lights[l], &precision)).collect();
+        let ground = self.scene.surroundings.ground(view).map(|visible| *visible.ground).filter(|_| settings.shadows);
+        // Where hardly any light is, the ground shows the shadow of even the faintest.
+        let kind = |light: &Light| if ground.is_some() { light.kind } else { lights::effective(light, &precision) };
+        let kinds: Vec<LightKind> = chosen.iter().map(|&l| kind(&self.scene.lights[l])).collect();
         // Positions in `chosen` of the lights that make a difference.
         let active: Vec<usize> = (0..chosen.len()).filter(|&i| lights::is_visible(&kinds[i], view)).collect();
 
         let start = Instant::now();
         self.shadowed = settings.shadows;
         let figures = if settings.shadows {
-            self.scene.plan(gpu, view, &chosen, &kinds, settings, Counting::Verdict)?
+            let ground = ground.map(|ground| ground.bounds());
+            let lights: Vec<_> = chosen.iter().copied().zip(kinds.iter().copied()).collect();
+            self.scene.plan(gpu, view, &lights, settings, Counting::Verdict, ground)?
         } else {
             vec![unplanned(view); chosen.len()]
         };
@@ -275,8 +291,16 @@ impl<'g> Renderer<'g> {
         let (gpu, samples) = (self.gpu, settings.samples);
         let (scene, layouts, timer) = (&self.scene, &self.layouts, &self.timer);
         let lights = &active[part.lights.clone()];
-        let records: Vec<LightRecord> = lights.iter().map(|&l| exposed.lights[l]).collect();
-        let shading = Shading { lights: &records, ..exposed.shading() };
+        let record = |lights: &[usize]| lights.iter().map(|&l| exposed.lights[l]).collect::<Vec<LightRecord>>();
+        let records = record(lights);
+        let others = [record(&active[..part.lights.start]), record(&active[part.lights.end..])].concat();
+        let ground = scene.surroundings.ground(view).filter(|_| spans.shadows && part.solid);
+        let shading = Shading {
+            lights: &records,
+            other_lights: if ground.is_some() { &others } else { &[] },
+            ground: ground.map(|visible| visible.ground),
+            ..exposed.shading()
+        };
         self.frame.update(
             gpu,
             layouts,
@@ -296,7 +320,8 @@ impl<'g> Renderer<'g> {
             (true, true) => Shadows::Stencil,
             (true, false) => Shadows::Bits,
         };
-        let step = Step::new(settings, finish == Finish::Forward, &records, shadows, added && part.solid);
+        let sky = scene.surroundings.sky.is_some();
+        let step = Step::new(settings, finish == Finish::Forward, &records, shadows, added && part.solid, sky);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let depth_stencil = targets.depth_stencil.clone();
         if shadowed {
@@ -319,13 +344,16 @@ impl<'g> Renderer<'g> {
             };
             let depth = depth.filter(|_| volumes.counts_tiles());
             let tiles = depth.as_ref().map(|depth| (&gpu.device, depth));
-            let targets = VerdictTargets { verdicts: view.as_ref(), depth_stencil: &depth_stencil, tiles, layered };
+            let targets =
+                VerdictTargets { verdicts: view.as_ref(), depth_stencil: &depth_stencil, tiles, layered, ground };
             pass.encode(&mut encoder, &targets, &self.frame, scene, verdicts, (timer, part.solid.then_some(0)));
         }
 
         let solid = scene.draws.solid.iter().filter(|_| part.solid);
-        let draws = solid.chain(scene.draws.blended.iter().filter(|_| part.blended));
-        self.forward.prepare(gpu, layouts, scene, step, draws.clone());
+        let blended = scene.draws.blended.iter().filter(|_| part.blended);
+        self.forward.prepare(gpu, layouts, scene, step, solid.clone().chain(blended.clone()));
+        let drawn = Behind { sky: part.solid && !step.added && (sky || ground.is_some()), ground };
+        self.backdrop.prepare(gpu, layouts, step, &drawn);
         let verdicts = (shadows == Shadows::Bits).then(|| match layered {
             true => targets.layer(gpu, layouts).verdicts.bind_group.clone(),
             false => targets.verdicts(gpu, layouts).bind_group.clone(),
@@ -343,13 +371,14 @@ impl<'g> Renderer<'g> {
             }
         };
         gpu.check()?;
-        let attachments = Attachments {
-            color: color.ok_or_else(no_targets)?,
-            depth_stencil: if shadowed || added { read_only(&depth_stencil) } else { cleared_depth(&depth_stencil) },
-            verdicts: verdicts.as_ref(),
-            timestamp_writes: timer.pass(spans.forward()).filter(|_| part.solid),
-        };
-        self.forward.encode(&mut encoder, attachments, &self.frame, scene, step, draws);
+        let depth = if shadowed || added { read_only(&depth_stencil) } else { cleared_depth(&depth_stencil) };
+        let timestamps = timer.pass(spans.forward()).filter(|_| part.solid);
+        let color = color.ok_or_else(no_targets)?;
+        let mut pass = forward_pass::begin(&mut encoder, color, depth, timestamps, &self.frame);
+        self.forward.draw(&mut pass, verdicts.as_ref(), &self.frame, scene, step, solid);
+        self.backdrop.draw(&mut pass, verdicts.as_ref(), &self.frame, scene, step, &drawn);
+        self.forward.draw(&mut pass, verdicts.as_ref(), &self.frame, scene, step, blended);
+        drop(pass);
         gpu.queue.submit([encoder.finish()]);
         Ok(())
     }
@@ -394,8 +423,8 @@ impl<'g> Renderer<'g> {
                 continue;
             }
             if settings.shadows {
-                let kinds: Vec<LightKind> = chosen.iter().map(|&l| self.scene.lights[l].kind).collect();
-                self.scene.plan(gpu, view, &chosen, &kinds, settings, counting)?;
+                let lights: Vec<_> = chosen.iter().map(|&l| (l, self.scene.lights[l].kind)).collect();
+                self.scene.plan(gpu, view, &lights, settings, counting, None)?;
                 if targets.stored_depth.is_some() {
                     self.scene.plan_tiles(gpu, settings)?;
                 }
@@ -444,6 +473,7 @@ struct Exposed {
     lights: Vec<LightRecord>,
     ambient: [f32; 3],
     background: [f32; 3],
+    sky: Option<Sky>,
     pre_exposure: f32,
     /// From pre-exposed radiance to the picture's; meaningless where it is measured.
     exposure: f32,
@@ -452,13 +482,16 @@ struct Exposed {
 impl Exposed {
     fn new(scene: &SceneOnGpu, chosen: &[usize], exposure: Exposure, view: &View) -> Self {
         let lit = chosen.iter().map(|&l| &scene.lights[l]);
-        let constant = [scene.ambient, scene.background, scene.emission];
+        let &Surroundings { ambient, background, sky, .. } = &scene.surroundings;
+        let Sky { zenith, horizon, nadir } = sky.unwrap_or_default();
+        let constant = [ambient, background, scene.emission, zenith, horizon, nadir];
         let pre_exposure = lights::pre_exposure(lit, &scene.bounds, &constant);
         let record = |&l: &usize| lights::record(&scene.lights[l], view, pre_exposure, scene.shapes.of_light[l]);
         Self {
             lights: chosen.iter().map(record).collect(),
-            ambient: scene.ambient.map(|c| c * pre_exposure),
-            background: scene.background.map(|c| c * pre_exposure),
+            ambient: ambient.map(|c| c * pre_exposure),
+            background: background.map(|c| c * pre_exposure),
+            sky: sky.map(|sky| sky.scaled(pre_exposure)),
             pre_exposure,
             exposure: match exposure {
                 Exposure::Auto => 1.0,
@@ -481,8 +514,8 @@ impl Exposed {
     }
 
     fn shading(&self) -> Shading<'_> {
-        let Self { lights, ambient, pre_exposure, exposure, .. } = self;
-        Shading { lights, ambient: *ambient, pre_exposure: *pre_exposure, exposure: *exposure }
+        let Self { ref lights, ambient, background, sky, pre_exposure, exposure } = *self;
+        Shading { lights, other_lights: &[], ambient, background, sky, ground: None, pre_exposure, exposure }
     }
 }
 
@@ -551,7 +584,7 @@ mod tests {
     use super::*;
     use crate::GpuOptions;
     use zfail_plan::glam::{DAffine3, DVec3};
-    use zfail_plan::scene::{Instance, Light, LightShape, Material, Mesh, Primitive};
+    use zfail_plan::scene::{Ground, Instance, LightShape, Material, Mesh, Primitive};
     use zfail_plan::view::Projection;
 
     /// A triangle under more than one light, before a background.
@@ -594,8 +627,17 @@ mod tests {
         let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
         let world_from_view = DAffine3::from_translation(DVec3::new(0.0, 0.0, 2.5));
         let view = View { world_from_view, projection, size: [64, 64] };
-        for unlit in [false, true] {
-            let mut renderer = Renderer::new(&gpu, &scene(unlit)).expect("a renderer");
+        let sky = Some(Sky { zenith: [0.2, 0.4, 0.9], horizon: [1.1, 0.9, 0.8], nadir: [0.2, 0.15, 0.1] });
+        let ground = Some(Ground { height: -0.9, center: [0.0; 2], radius: 9.0 });
+        let plain = scene(false);
+        for scene in [
+            scene(true),
+            Scene { sky, ..plain.clone() },
+            Scene { ground, ..plain.clone() },
+            Scene { sky, ground, lights: plain.lights[..1].to_vec(), ..plain.clone() },
+            plain,
+        ] {
+            let mut renderer = Renderer::new(&gpu, &scene).expect("a renderer");
             let mut direct = |settings: &Settings| {
                 renderer.draw(&view, settings, Finish::Forward).expect("a frame");
                 read_back::texture(&gpu, &renderer.targets.as_ref().expect("targets").ldr).expect("texels")
