@@ -54,7 +54,7 @@ fn shadows_have_the_share_of_light_that_is_left() {
                 behind[c] * rest / (rest + direct)
             });
             assert!(alike(middle, expected), "{middle:?} is not {expected:?}");
-            for (beside, dark) in [(DVec3::X * 0.45, true), (DVec3::X * 0.56, false), (DVec3::Z * 0.6, false)] {
+            for (beside, dark) in [(DVec3::X * 0.4, true), (DVec3::X * 0.62, false), (DVec3::Z * 0.66, false)] {
                 let is_dark = pixel(&shown, &view, beside) != pixel(&bare, &view, beside);
                 assert_eq!(is_dark, dark, "{beside}, {samples} samples");
             }

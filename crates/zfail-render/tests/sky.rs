@@ -72,7 +72,7 @@ fn nothing_is_lost_or_won_under_a_white_sky() {
     let eyes = [DVec3::Z, DVec3::new(0.9, 0.0, 0.5).normalize(), DVec3::new(0.0, 1.0, 0.2).normalize()];
     for eye in eyes {
         for roughness in [0.0, 0.1, 0.3, 0.5, 0.8, 1.0] {
-            for metallic in [0.0, 0.5, 1.0] {
+            for metallic in [0.0, 1.0] {
                 let found = shown(&gpu, WHITE, Material { metallic, ..metal(roughness) }, DVec3::Z, eye);
                 assert!(found.abs_diff_eq(DVec3::ONE, 4e-3), "{metallic}, {roughness}, {eye}: {found}");
             }
