@@ -135,9 +135,31 @@ impl<'g> Renderer<'g> {
     pub fn render(&mut self, view: &View, settings: &Settings) -> Result<FrameStats, RenderError> {
         // What is blended or averaged has to be radiance.
         let direct = settings.samples == 1 && !self.scene.draws.blends;
-        let known = matches!(settings.exposure, Exposure::Ev(_));
+        let known = matches!(self.exposed(settings).exposure, Exposure::Ev(_));
         let finish = if known && direct { Finish::Forward } else { Finish::Darkroom };
         self.draw(view, settings, finish)
+    }
+
+    /// The stops that automatic exposure gives the picture of `view`, for a series of pictures to share.
+    ///
+    /// # Errors
+    /// As for [`Renderer::render`].
+    pub fn metered(&mut self, view: &View, settings: &Settings) -> Result<f32, RenderError> {
+        if let Exposure::Ev(stops) = self.exposed(settings).exposure {
+            return Ok(stops);
+        }
+        self.draw(view, settings, Finish::Darkroom)?;
+        let (meter, _) = self.darkroom.get(&settings.samples).ok_or_else(no_targets)?;
+        let scale = read_back::number(self.gpu, &meter.exposure)?;
+        let chosen = self.scene.chosen(settings)?;
+        let pre_exposure = Exposed::new(&self.scene, &chosen, settings.exposure, view).pre_exposure;
+        Ok((scale * pre_exposure).log2())
+    }
+
+    /// With what is known about exposure.
+    fn exposed(&self, settings: &Settings) -> Settings {
+        let known = self.scene.exposure.filter(|_| settings.exposure == Exposure::Auto);
+        Settings { exposure: known.map_or(settings.exposure, Exposure::Ev), ..settings.clone() }
     }
 
     /// Counts the fragments of the volumes that the last frame drew, of which `stats` tells, in passes of their own. With
@@ -167,6 +189,7 @@ impl<'g> Renderer<'g> {
     }
 
     fn draw(&mut self, view: &View, settings: &Settings, finish: Finish) -> Result<FrameStats, RenderError> {
+        let settings = &self.exposed(settings);
         let gpu = self.gpu;
         let samples = settings.samples;
         if !matches!(samples, 1 | 4) {

@@ -31,6 +31,8 @@ pub struct SceneOnGpu {
     /// Of every mesh, object space.
     mesh_bounds: Vec<Bounds>,
     pub surroundings: Surroundings,
+    /// Stops, where those of the lights are known.
+    pub exposure: Option<f32>,
     /// Radiance of the strongest emission.
     pub emission: [f32; 3],
     /// The least roughness of any material.
@@ -80,6 +82,7 @@ impl SceneOnGpu {
             instance_bounds: Vec::new(),
             mesh_bounds: scene.meshes.iter().map(Mesh::bounds).collect(),
             surroundings: Surroundings::new(gpu, scene)?,
+            exposure: scene.exposure,
             emission,
             roughness: scene.materials.iter().map(least_roughness).fold(1.0, f64::min),
             shadows,
