@@ -9,7 +9,7 @@ use zfail_plan::scene::{Camera, MaskCasting, Scene};
 use zfail_plan::view::View;
 use zfail_render::{Gpu, GpuOptions};
 use zfail_scene::read::Fault;
-use zfail_scene::{Animated, FileInfo, SavedView, SavedViewError, builtin, cut};
+use zfail_scene::{Animated, FileInfo, GroundChoice, SavedView, SavedViewError, Setting, builtin, cut};
 
 const BUILTIN: &str = "builtin:";
 
@@ -57,14 +57,24 @@ fn open(scene: &str, loading: &Loading) -> Result<(Animated, Option<FileInfo>), 
     }
 }
 
-/// A scene that can be rendered: a file lacks no camera, light or ambient light any more.
+/// A scene that can be rendered in a picture of `size` pixels: a file lacks no camera, light or ambient light any more. What
+/// `setting` leaves open suits the moments that are asked for.
 ///
 /// # Errors
-/// As [`read`].
-pub fn complete(scene: &str, loading: &Loading) -> Result<Animated, Error> {
+/// As [`read`], or if there is no animation as named.
+pub fn complete(
+    scene: &str,
+    loading: &Loading,
+    moment: Option<&Moment>,
+    size: [u32; 2],
+    setting: Setting,
+) -> Result<Animated, Error> {
     let (mut animated, file) = read(scene, loading)?;
-    if file.is_some() {
-        zfail_scene::complete(&mut animated.scene);
+    // Built-in scenes are whole.
+    if file.is_some() || setting.sun.is_some() || matches!(setting.ground, GroundChoice::Height(_)) {
+        let animation = moment.map(|moment| animation(&animated, moment)).transpose()?;
+        let aspect = f64::from(size[0]) / f64::from(size[1]);
+        Setting { aspect, animation, ..setting }.complete(&mut animated);
     }
     Ok(animated)
 }
@@ -75,7 +85,7 @@ pub fn complete(scene: &str, loading: &Loading) -> Result<Animated, Error> {
 /// # Errors
 /// If there is no such animation.
 pub fn at_moment(animated: Animated, moment: &Moment) -> Result<Scene, Error> {
-    if moment.animation.is_none() && moment.time.is_none() {
+    if moment.shown().is_none() {
         return Ok(animated.scene);
     }
     let animation = animation(&animated, moment)?;
@@ -105,10 +115,12 @@ pub struct Shot {
 /// # Errors
 /// If the scene cannot be loaded, or has no such animation, camera or light.
 pub fn shot(subject: &Subject, quiet: bool) -> Result<Shot, Error> {
-    let scene = at_moment(complete(&subject.scene.scene, &subject.scene.loading)?, &subject.moment)?;
+    let (source, size) = (&subject.scene, subject.size.0);
+    let animated = complete(&source.scene, &source.loading, subject.moment.shown(), size, subject.sunlight.bare())?;
+    let scene = at_moment(animated, &subject.moment)?;
     console::notices(&scene.notices, quiet);
     let camera = camera(&scene, &subject.camera)?;
-    let view = scene.cameras[camera].view(subject.size.0, &scene.bounds());
+    let view = scene.cameras[camera].view(size, &scene.bounds());
     let lights = lights(&scene, &subject.lights)?;
     let camera = scene.cameras[camera].name.clone();
     Ok(Shot { scene, camera, view, lights })

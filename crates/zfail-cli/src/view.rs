@@ -14,9 +14,11 @@ use zfail_view::{Host, Message, Options};
 /// # Errors
 /// If there is no display, or no device that can draw on it.
 pub fn run(args: &args::View) -> Result<(), Error> {
-    let loading = args.loading.clone();
+    let (loading, size, setting) = (args.loading.clone(), args.size.0, args.sunlight.with(&args.surroundings));
     let host = Host {
-        load: Arc::new(move |scene| input::complete(scene, &loading).map_err(|e| e.to_string())),
+        load: Arc::new(move |scene| {
+            input::complete(scene, &loading, None, size, setting.clone()).map_err(|e| e.to_string())
+        }),
         encode: |size, rgba| encode::png_picture(size, &encode::rgb8(rgba), None).map_err(|e| e.to_string()),
         explain: input::chain,
         say,
@@ -33,7 +35,7 @@ pub fn run(args: &args::View) -> Result<(), Error> {
         },
         panels: !args.no_panels,
         folder: args.folder.clone(),
-        flags: [args.loading.flags(), args.device.flags()].concat(),
+        flags: [args.loading.flags(), args.surroundings.flags(), args.device.flags()].concat(),
         gpu: input::gpu_options(&args.device),
     };
     zfail_view::run(options, host).map_err(|e| Error::failed(input::chain(&e)))

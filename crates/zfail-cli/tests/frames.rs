@@ -60,14 +60,15 @@ fn a_frame_is_the_picture_of_its_time() {
     }
     let folder = tempfile::tempdir().unwrap();
     small_scene(folder.path());
-    assert_eq!(render(folder.path(), &ALL).stderr, "");
+    assert_eq!(render(folder.path(), &[&ALL[..], &["--exposure", "0.5"]].concat()).stderr, "");
     let pixels = |file: &str| image::open(folder.path().join(file)).unwrap().into_rgb8();
     let mut distinct = Vec::new();
     for (k, time) in ["0", "0.3333333333333333", "0.6666666666666666", "1", "1.3333333333333333", "1.6666666666666667"]
         .into_iter()
         .enumerate()
     {
-        let args = ["--size", "64x48", "--light", "0", "--light", "1", "-o", "still.png", "--time", time];
+        let args =
+            ["--size", "64x48", "--light", "0", "--light", "1", "-o", "still.png", "--time", time, "--exposure", "0.5"];
         zfail(folder.path(), &[&["render", "small.gltf"][..], &args].concat()).ok();
         let frame = pixels(&format!("frames/{k:04}.png"));
         assert_eq!(frame, pixels("still.png"), "frame {k}");
@@ -82,6 +83,37 @@ fn a_frame_is_the_picture_of_its_time() {
     let note = zfail(folder.path(), &more).ok().stderr;
     assert_eq!(note, "zfail: note: the animation 'glide' ends after 2.000 s: frames after number 6 are alike\n");
     assert_eq!(pixels("late-6.png"), pixels("late-7.png"));
+}
+
+#[test]
+fn frames_are_exposed_alike_whichever_are_asked_for() {
+    if !has_gpu() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    small_scene(folder.path());
+    let scene = ["render", "small.gltf", "--animation", "sunset", "--camera", "1", "--light", "0", "--size", "64x48"];
+    let run = |more: &[&str]| zfail(folder.path(), &[&scene[..], more].concat()).ok();
+    // The sky, above the scene.
+    let color = |file: &str| image::open(folder.path().join(file)).unwrap().into_rgb8().get_pixel(0, 0).0;
+    let frames = |range: &str| run(&["--frames", range, "--fps", "2.5", "-o", "frames/%d.png"]);
+    frames("0..6");
+    let whole = bytes(&folder.path().join("frames"));
+    let colors: Vec<[u8; 3]> = (0..COUNT).map(|k| color(&format!("frames/{k}.png"))).collect();
+    assert!(colors.iter().all(|color| *color == colors[0]), "{colors:?}");
+    assert_ne!(whole["0.png"], whole["5.png"], "the sun has gone down");
+    // Stills are exposed each by itself.
+    let still = |time: &str| {
+        run(&["--time", time, "-o", "still.png"]);
+        color("still.png")
+    };
+    assert_ne!(still("0"), still("2"), "the comparison can fail");
+    // A run that is asked for the last frames alone makes the same ones.
+    fs::remove_dir_all(folder.path().join("frames")).unwrap();
+    frames("4..6");
+    for name in ["4.png", "5.png"] {
+        assert_eq!(fs::read(folder.path().join("frames").join(name)).unwrap(), whole[name], "{name}");
+    }
 }
 
 #[test]

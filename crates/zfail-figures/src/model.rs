@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use std::sync::OnceLock;
 use zfail_plan::glam::{DAffine3, DMat4, DVec3, DVec4};
 use zfail_plan::plan::Caster;
-use zfail_plan::scene::{Bounds, Instance, Light, Mesh, Pose, Scene};
+use zfail_plan::scene::{Bounds, Ground, Instance, Light, Mesh, Pose, Scene};
 use zfail_plan::topology::{Surface, Topology};
 use zfail_plan::view::View;
 
@@ -21,6 +21,8 @@ pub struct Model {
     pub lights: Vec<Light>,
     /// Of each light in figures.
     pub hues: Vec<[u8; 3]>,
+    /// Catches shadows beside the instances.
+    ground: Option<Ground>,
     /// World space.
     pub anchor: DVec3,
     /// Indices of the instances that cast, and of each instance among these.
@@ -87,6 +89,7 @@ impl Model {
             instances: scene.instances.clone(),
             hues: hues(&scene.lights),
             lights: scene.lights.clone(),
+            ground: scene.ground,
             anchor: if bounds.is_empty() { DVec3::ZERO } else { bounds.center() },
             casters,
             caster_of,
@@ -181,6 +184,12 @@ impl Model {
         let of_mesh: Vec<Bounds> = self.meshes.iter().map(|model| model.mesh.bounds()).collect();
         let boxes = self.instances.iter().map(|i| of_mesh[i.mesh].transformed(&i.world_from_object));
         Bounds::of(boxes.filter(|bounds| !bounds.is_empty()).flat_map(|bounds| [bounds.min, bounds.max]))
+    }
+
+    /// Boxes around everything on which `view` shows shadows, world space.
+    pub fn receivers(&self, view: &View) -> Vec<Bounds> {
+        let ground = self.ground.filter(|ground| ground.faces(view));
+        std::iter::once(self.bounds()).chain(ground.map(|ground| ground.bounds())).collect()
     }
 
     /// Anchored to clip space of `view`.

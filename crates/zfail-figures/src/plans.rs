@@ -61,7 +61,7 @@ fn plan<'p>(
         .zip(&excluded)
         .map(|(&l, excluded)| ShadowLight { kind: model.lights[l].kind, excluded })
         .collect();
-    let receivers = &[model.bounds()];
+    let receivers = &model.receivers(view);
     let frame = Frame { view, casters: &model.casters(), lights: &lights, receivers, measures, counting };
     Ok(planner.plan(&frame)?)
 }

@@ -50,7 +50,18 @@ pub fn scene(scene: &Scene) -> Result<(), RenderError> {
             return fail(format!("instance {i} has a transform that is not finite"));
         }
     }
+    surroundings(scene)?;
     lights(scene)
+}
+
+/// Checks the ground of `scene`.
+pub fn surroundings(scene: &Scene) -> Result<(), RenderError> {
+    match &scene.ground {
+        Some(ground) if !(ground.middle().is_finite() && ground.radius.is_finite() && ground.radius > 0.0) => {
+            Err(RenderError::Scene(format!("a ground of radius {} at {} is none", ground.radius, ground.middle())))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Checks the lights of `scene`.

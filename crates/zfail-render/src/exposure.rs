@@ -64,7 +64,7 @@ impl ExposureMeter {
             count: pipeline("count"),
             expose: pipeline("expose"),
             histogram: buffer("histogram", BINS * 4, wgpu::BufferUsages::empty()),
-            exposure: buffer("exposure", 4, wgpu::BufferUsages::UNIFORM),
+            exposure: buffer("exposure", 4, wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_SRC),
             layout,
         }
     }

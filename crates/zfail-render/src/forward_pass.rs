@@ -20,13 +20,15 @@ pub struct Step {
     /// Lights in use; all numbers that are not unrolled are the same.
     lights: u32,
     /// Some light has a shape of its own.
-    shaped: bool,
+    pub shaped: bool,
     /// Where the verdicts are, and with them the depth.
     pub shadows: Shadows,
     /// Adds more lights to what an earlier step has drawn.
     pub added: bool,
     /// Light fades at the terminator of coarse meshes.
     pub soft: bool,
+    /// There is a sky.
+    pub sky: bool,
 }
 
 /// How a step learns what is in shadow.
@@ -42,7 +44,14 @@ pub enum Shadows {
 }
 
 impl Step {
-    pub fn new(settings: &Settings, developed: bool, lights: &[LightRecord], shadows: Shadows, added: bool) -> Self {
+    pub fn new(
+        settings: &Settings,
+        developed: bool,
+        lights: &[LightRecord],
+        shadows: Shadows,
+        added: bool,
+        sky: bool,
+    ) -> Self {
         Self {
             samples: settings.samples,
             developed,
@@ -51,7 +60,13 @@ impl Step {
             shadows,
             added,
             soft: settings.terminator == Terminator::Soft,
+            sky,
         }
+    }
+
+    /// What of it matters where no surface is.
+    pub fn behind_surfaces(self) -> Self {
+        Self { lights: 0, soft: false, ..self }
     }
 }
 
@@ -65,13 +80,23 @@ pub struct ForwardPass {
     pipelines: HashMap<Key, Vec<wgpu::RenderPipeline>>,
 }
 
-/// What the pass draws to.
-pub struct Attachments<'a> {
-    pub color: wgpu::RenderPassColorAttachment<'a>,
-    pub depth_stencil: wgpu::RenderPassDepthStencilAttachment<'a>,
-    /// Needed by steps with [`Shadows::Bits`].
-    pub verdicts: Option<&'a wgpu::BindGroup>,
-    pub timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'a>>,
+/// Begins the pass.
+pub fn begin<'e>(
+    encoder: &'e mut wgpu::CommandEncoder,
+    color: wgpu::RenderPassColorAttachment<'_>,
+    depth_stencil: wgpu::RenderPassDepthStencilAttachment<'_>,
+    timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    frame: &FrameData,
+) -> wgpu::RenderPass<'e> {
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("forward"),
+        color_attachments: &[Some(color)],
+        depth_stencil_attachment: Some(depth_stencil),
+        timestamp_writes,
+        ..Default::default()
+    });
+    pass.set_bind_group(0, &frame.bind_group, &[]);
+    pass
 }
 
 impl ForwardPass {
@@ -90,31 +115,23 @@ impl ForwardPass {
         }
     }
 
-    /// Draws `solid` and then `blended`, for which [`Self::prepare`] has been called.
-    pub fn encode<'d>(
+    /// Draws surfaces for which [`Self::prepare`] has been called.
+    pub fn draw<'d>(
         &self,
-        encoder: &mut wgpu::CommandEncoder,
-        attachments: Attachments<'_>,
+        pass: &mut wgpu::RenderPass<'_>,
+        verdicts: Option<&wgpu::BindGroup>,
         frame: &FrameData,
         scene: &SceneOnGpu,
         step: Step,
         draws: impl Iterator<Item = &'d Draw>,
     ) {
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("forward"),
-            color_attachments: &[Some(attachments.color)],
-            depth_stencil_attachment: Some(attachments.depth_stencil),
-            timestamp_writes: attachments.timestamp_writes,
-            ..Default::default()
-        });
-        pass.set_bind_group(0, &frame.bind_group, &[]);
-        if let Some(verdicts) = attachments.verdicts {
+        if let Some(verdicts) = verdicts {
             pass.set_bind_group(2, verdicts, &[]);
         }
         for draw in draws {
             let part = &scene.draws.parts[draw.part];
             let Some(mesh) = &scene.meshes[part.mesh] else { continue };
-            mesh.bind(&mut pass, part.look.vertices(), &frame.instances);
+            mesh.bind(pass, part.look.vertices(), &frame.instances);
             if draw.sorted.is_some() {
                 pass.set_index_buffer(scene.sorted.slice(..), wgpu::IndexFormat::Uint32);
             }
@@ -144,6 +161,7 @@ fn create(gpu: &Gpu, layouts: &Layouts, (look, mirrored, sorted, step): Key) -> 
         ("UNLIT", look.unlit),
         ("ADDED", step.added),
         ("DEVELOPED", step.developed),
+        ("SKY", step.sky),
     ]
     .map(|(name, value)| (name, f64::from(u8::from(value))));
     let constants: Vec<_> = look.constants().chain(flags).collect();

@@ -4,7 +4,8 @@ use crate::gpu_data::{FrameUniform, InstanceRecord, LightRecord, UNROLLED};
 use crate::layouts::{Layouts, bind};
 use crate::{Gpu, RenderError};
 use bytemuck::Pod;
-use zfail_plan::glam::{DAffine3, DMat3};
+use zfail_plan::glam::{DAffine3, DMat3, DVec3};
+use zfail_plan::scene::{Ground, Sky};
 use zfail_plan::view::{Projection, View};
 
 /// Data of a frame, on the device. The buffers grow to the largest frame seen.
@@ -29,8 +30,16 @@ pub struct FrameData {
 pub struct Shading<'a> {
     /// Pre-exposed.
     pub lights: &'a [LightRecord],
+    /// Pre-exposed: all others, which the ground wants to know of.
+    pub other_lights: &'a [LightRecord],
     /// Pre-exposed.
     pub ambient: [f32; 3],
+    /// Pre-exposed.
+    pub background: [f32; 3],
+    /// Pre-exposed.
+    pub sky: Option<Sky>,
+    /// One that is seen; its placement comes after those of all instances.
+    pub ground: Option<&'a Ground>,
     /// Scale from scene radiance to what shaders compute with.
     pub pre_exposure: f32,
     /// Scale from there to the picture.
@@ -70,14 +79,24 @@ impl FrameData {
         for (slot, light) in first.iter_mut().zip(lights) {
             *slot = *light;
         }
+        let sky = shading.sky.unwrap_or_default();
+        let middle = shading.ground.map_or(DVec3::ZERO, Ground::middle);
         let uniform = FrameUniform {
             view_per_ndc: [clip_from_view.x_axis.x.recip() as f32, clip_from_view.y_axis.y.recip() as f32],
             size: view.size.map(|s| s as f32),
             ambient: shading.ambient,
             orthographic: if matches!(view.projection, Projection::Orthographic { .. }) { 1.0 } else { 0.0 },
+            up: view.world_from_view.matrix3.row(1).as_vec3().to_array(),
             pre_exposure: shading.pre_exposure,
+            background: shading.background,
             exposure: shading.exposure,
+            zenith: sky.zenith,
             light_count: lights.len() as u32,
+            horizon: sky.horizon,
+            all_lights: (lights.len() + shading.other_lights.len()) as u32,
+            nadir: sky.nadir,
+            per_ground_radius: shading.ground.map_or(0.0, |ground| ground.radius.recip() as f32),
+            ground: view.view_from_object(&DAffine3::from_translation(middle)).translation.as_vec3().to_array(),
             pad: 0,
             lights: first,
         };
@@ -92,7 +111,15 @@ impl FrameData {
             }
             self.records.push(record(view, world_from_object, [start, self.listed.len() as u32]));
         }
+        if let Some(ground) = shading.ground {
+            let end = self.listed.len() as u32;
+            self.records.push(record(view, &ground.world_from_disc(), [end; 2]));
+        }
         let usage = wgpu::BufferUsages::STORAGE;
+        let lights: &[LightRecord] = match shading.other_lights {
+            [] => lights,
+            others => &[lights, others].concat(),
+        };
         let grown = [
             write(gpu, &mut self.lights, "lights", usage, lights)?,
             write(gpu, &mut self.lists, "lists of lights", usage, &self.listed)?,
@@ -164,7 +191,6 @@ fn group(gpu: &Gpu, layouts: &Layouts, buffers: [&wgpu::Buffer; 4]) -> wgpu::Bin
 #[cfg(test)]
 mod tests {
     use super::*;
-    use zfail_plan::glam::DVec3;
 
     #[test]
     fn normals_stay_perpendicular_and_outside() {

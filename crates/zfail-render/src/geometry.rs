@@ -115,6 +115,11 @@ impl MeshBuffers {
         gpu.queue.write_buffer(&self.tangents, 0, bytemuck::cast_slice(&bent.tangents));
     }
 
+    /// Of all triangles.
+    pub fn index_count(&self) -> u32 {
+        (self.indices.size() / size_of::<u32>() as u64) as u32
+    }
+
     /// Binds what `vertices` reads, placed by `instances`.
     pub fn bind(&self, pass: &mut wgpu::RenderPass<'_>, vertices: Vertices, instances: &wgpu::Buffer) {
         let buffers = [&self.positions, instances, &self.normals, &self.paint, &self.tangents];

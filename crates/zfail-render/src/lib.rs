@@ -9,6 +9,7 @@
 mod aov;
 mod attribute_outputs;
 mod attribute_pass;
+mod backdrop_pass;
 mod blend_order;
 mod check;
 mod develop_pass;
@@ -37,6 +38,7 @@ mod shadow_pass;
 mod shapes;
 mod srgb;
 mod stats;
+mod surroundings;
 mod targets;
 mod terminator;
 mod textures;

@@ -35,6 +35,17 @@ pub fn texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, RenderErro
     Ok(texels)
 }
 
+/// The first four bytes of `buffer`, as a number.
+pub fn number(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<f32, RenderError> {
+    let staging = staging(gpu, 4);
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, 4);
+    gpu.queue.submit([encoder.finish()]);
+    let mut number = 0.0;
+    map(gpu, &staging, |bytes| number = bytemuck::pod_read_unaligned(&bytes[..4]))?;
+    Ok(number)
+}
+
 fn staging(gpu: &Gpu, size: u64) -> wgpu::Buffer {
     gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("read-back"),

@@ -1,31 +1,32 @@
 //! The order of passes: verdicts of all lights; forward shading; exposure and tone mapping where the forward pass could
 //! not do it (McGuire et al. 2003, section 8).
 
-use crate::attribute_pass::AttributePass;
+mod exposed;
+mod measured;
+mod parts;
+mod step;
+
+use crate::backdrop_pass::BackdropPass;
 use crate::develop_pass::DevelopPass;
 use crate::exposure::ExposureMeter;
-use crate::forward_pass::{Attachments, ForwardPass, Shadows, Step};
+use crate::forward_pass::ForwardPass;
 use crate::fragment_counter::FragmentCounter;
-use crate::frame::{FrameData, Shading};
-use crate::gpu_data::LightRecord;
+use crate::frame::FrameData;
 use crate::layouts::Layouts;
-use crate::mask_pass::{Mask, MaskPass};
-use crate::pipeline::{cleared, cleared_depth, continued, read_only};
 use crate::scene::SceneOnGpu;
-use crate::shadow_pass::ShadowPass;
 use crate::stats::{FrameStats, LightFigures};
-use crate::targets::{Attributes, Targets};
+use crate::targets::Targets;
 use crate::timing::Timer;
-use crate::verdict_pass::{self, Verdict, VerdictPass, VerdictTargets};
-use crate::{
-    AovKind, Aovs, Exposure, Gpu, Picture, RenderError, Settings, attribute_outputs, lights, read_back, tone_map,
-};
+use crate::verdict_pass::VerdictPass;
+use crate::{Exposure, Gpu, Picture, RenderError, Settings, lights, read_back};
+use exposed::Exposed;
 use half::f16;
+use measured::Measured;
+use parts::{Finish, Spans, parts};
 use std::collections::HashMap;
-use std::ops::Range;
 use std::time::Instant;
 use zfail::{Counting, LightStats};
-use zfail_plan::scene::{LightKind, Pose, Scene};
+use zfail_plan::scene::{Light, LightKind, Pose, Scene};
 use zfail_plan::view::View;
 
 /// A scene on the device, ready to be rendered from any view.
@@ -36,6 +37,7 @@ pub struct Renderer<'g> {
     scene: SceneOnGpu,
     frame: FrameData,
     forward: ForwardPass,
+    backdrop: BackdropPass,
     /// By sample count and whether verdicts become bits.
     verdicts: HashMap<(u32, bool), VerdictPass>,
     /// By sample count.
@@ -46,24 +48,6 @@ pub struct Renderer<'g> {
     /// Whether the last frame had shadows.
     shadowed: bool,
     fragments: Option<FragmentCounter>,
-}
-
-/// What measured outputs need.
-#[derive(Debug)]
-struct Measured {
-    attributes: AttributePass,
-    shadow: ShadowPass,
-    mask: MaskPass,
-    targets: Attributes,
-}
-
-/// How a picture is finished.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Finish {
-    /// By the forward pass itself.
-    Forward,
-    /// From radiance.
-    Darkroom,
 }
 
 impl<'g> Renderer<'g> {
@@ -80,6 +64,7 @@ impl<'g> Renderer<'g> {
             scene,
             layouts,
             forward: ForwardPass::default(),
+            backdrop: BackdropPass::default(),
             verdicts: HashMap::new(),
             darkroom: HashMap::new(),
             targets: None,
@@ -112,6 +97,14 @@ impl<'g> Renderer<'g> {
         Ok(())
     }
 
+    /// Takes ambient light, background, sky and ground of `scene`.
+    ///
+    /// # Errors
+    /// If the ground is no disc. The old surroundings stay then.
+    pub fn set_surroundings(&mut self, scene: &Scene) -> Result<(), RenderError> {
+        self.scene.set_surroundings(self.gpu, scene)
+    }
+
     /// Takes from `scene`, which otherwise is the one that was uploaded, in its present pose, which instances cast shadows.
     ///
     /// # Errors
@@ -142,9 +135,31 @@ impl<'g> Renderer<'g> {
     pub fn render(&mut self, view: &View, settings: &Settings) -> Result<FrameStats, RenderError> {
         // What is blended or averaged has to be radiance.
         let direct = settings.samples == 1 && !self.scene.draws.blends;
-        let known = matches!(settings.exposure, Exposure::Ev(_));
+        let known = matches!(self.exposed(settings).exposure, Exposure::Ev(_));
         let finish = if known && direct { Finish::Forward } else { Finish::Darkroom };
         self.draw(view, settings, finish)
+    }
+
+    /// The stops that automatic exposure gives the picture of `view`, for a series of pictures to share.
+    ///
+    /// # Errors
+    /// As for [`Renderer::render`].
+    pub fn metered(&mut self, view: &View, settings: &Settings) -> Result<f32, RenderError> {
+        if let Exposure::Ev(stops) = self.exposed(settings).exposure {
+            return Ok(stops);
+        }
+        self.draw(view, settings, Finish::Darkroom)?;
+        let (meter, _) = self.darkroom.get(&settings.samples).ok_or_else(no_targets)?;
+        let scale = read_back::number(self.gpu, &meter.exposure)?;
+        let chosen = self.scene.chosen(settings)?;
+        let pre_exposure = Exposed::new(&self.scene, &chosen, settings.exposure, view).pre_exposure;
+        Ok((scale * pre_exposure).log2())
+    }
+
+    /// With what is known about exposure.
+    fn exposed(&self, settings: &Settings) -> Settings {
+        let known = self.scene.exposure.filter(|_| settings.exposure == Exposure::Auto);
+        Settings { exposure: known.map_or(settings.exposure, Exposure::Ev), ..settings.clone() }
     }
 
     /// Counts the fragments of the volumes that the last frame drew, of which `stats` tells, in passes of their own. With
@@ -174,6 +189,7 @@ impl<'g> Renderer<'g> {
     }
 
     fn draw(&mut self, view: &View, settings: &Settings, finish: Finish) -> Result<FrameStats, RenderError> {
+        let settings = &self.exposed(settings);
         let gpu = self.gpu;
         let samples = settings.samples;
         if !matches!(samples, 1 | 4) {
@@ -192,15 +208,19 @@ impl<'g> Renderer<'g> {
 
         let exposed = Exposed::new(&self.scene, &chosen, settings.exposure, view);
         let precision = exposed.precision(&self.scene, finish);
-        let kinds: Vec<LightKind> =
-            chosen.iter().map(|&l| lights::effective(&self.scene.lights[l], &precision)).collect();
+        let ground = self.scene.surroundings.ground(view).map(|visible| *visible.ground).filter(|_| settings.shadows);
+        // Where hardly any light is, the ground shows the shadow of even the faintest.
+        let kind = |light: &Light| if ground.is_some() { light.kind } else { lights::effective(light, &precision) };
+        let kinds: Vec<LightKind> = chosen.iter().map(|&l| kind(&self.scene.lights[l])).collect();
         // Positions in `chosen` of the lights that make a difference.
         let active: Vec<usize> = (0..chosen.len()).filter(|&i| lights::is_visible(&kinds[i], view)).collect();
 
         let start = Instant::now();
         self.shadowed = settings.shadows;
         let figures = if settings.shadows {
-            self.scene.plan(gpu, view, &chosen, &kinds, settings, Counting::Verdict)?
+            let ground = ground.map(|ground| ground.bounds());
+            let lights: Vec<_> = chosen.iter().copied().zip(kinds.iter().copied()).collect();
+            self.scene.plan(gpu, view, &lights, settings, Counting::Verdict, ground)?
         } else {
             vec![unplanned(view); chosen.len()]
         };
@@ -256,270 +276,10 @@ impl<'g> Renderer<'g> {
             lights: lights.collect(),
         })
     }
-
-    /// Submits one step of a frame.
-    #[expect(clippy::too_many_arguments, reason = "what differs between the steps of one frame")]
-    fn step(
-        &mut self,
-        view: &View,
-        active: &[usize],
-        kinds: &[LightKind],
-        figures: &[LightStats],
-        exposed: &Exposed,
-        part: &Part,
-        added: bool,
-        finish: Finish,
-        spans: Spans,
-        settings: &Settings,
-    ) -> Result<(), RenderError> {
-        let (gpu, samples) = (self.gpu, settings.samples);
-        let (scene, layouts, timer) = (&self.scene, &self.layouts, &self.timer);
-        let lights = &active[part.lights.clone()];
-        let records: Vec<LightRecord> = lights.iter().map(|&l| exposed.lights[l]).collect();
-        let shading = Shading { lights: &records, ..exposed.shading() };
-        self.frame.update(
-            gpu,
-            layouts,
-            view,
-            &shading,
-            scene.draws.order.iter().map(|&i| &scene.instances[i].world_from_object),
-            |l, slot| lights::reaches(&kinds[lights[l]], &scene.instance_bounds[scene.draws.order[slot]]),
-        )?;
-        let targets = self.targets.as_mut().ok_or_else(no_targets)?;
-        // Blended surfaces have a verdict of their own: that on the nearest of them.
-        let layered = spans.shadows && !part.solid && lights.len() <= verdict_pass::LIGHTS;
-        let shadowed = spans.shadows && part.solid || layered;
-        // Drawing everything twice is cheaper than a texture of verdicts unless there is more to draw than to fill.
-        let few = scene.draws.solid_triangles() < view.size[0] * view.size[1] / 8;
-        let shadows = match (shadowed, records.len() == 1 && samples == 1 && few && !layered) {
-            (false, _) => Shadows::None,
-            (true, true) => Shadows::Stencil,
-            (true, false) => Shadows::Bits,
-        };
-        let step = Step::new(settings, finish == Finish::Forward, &records, shadows, added && part.solid);
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let depth_stencil = targets.depth_stencil.clone();
-        if shadowed {
-            let bits = shadows == Shadows::Bits;
-            let volumes = &scene.shadows;
-            let pass =
-                self.verdicts.entry((samples, bits)).or_insert_with(|| VerdictPass::new(gpu, volumes, samples, bits));
-            pass.prepare(gpu, layouts, scene, layered);
-            let verdicts = lights.iter().map(|&light| Verdict {
-                light,
-                scissor: Some(figures[light].scissor).filter(|_| figures[light].has_shadow()),
-                span: spans.light(light).filter(|_| part.solid),
-            });
-            let (view, depth_stencil, depth) = if layered {
-                let layer = targets.layer(gpu, layouts);
-                (Some(layer.verdicts.view.clone()), layer.depth_stencil.clone(), layer.depth.clone())
-            } else {
-                let view = bits.then(|| targets.verdicts(gpu, layouts).view.clone());
-                (view, depth_stencil.clone(), targets.depth.clone())
-            };
-            let depth = depth.filter(|_| volumes.counts_tiles());
-            let tiles = depth.as_ref().map(|depth| (&gpu.device, depth));
-            let targets = VerdictTargets { verdicts: view.as_ref(), depth_stencil: &depth_stencil, tiles, layered };
-            pass.encode(&mut encoder, &targets, &self.frame, scene, verdicts, (timer, part.solid.then_some(0)));
-        }
-
-        let solid = scene.draws.solid.iter().filter(|_| part.solid);
-        let draws = solid.chain(scene.draws.blended.iter().filter(|_| part.blended));
-        self.forward.prepare(gpu, layouts, scene, step, draws.clone());
-        let verdicts = (shadows == Shadows::Bits).then(|| match layered {
-            true => targets.layer(gpu, layouts).verdicts.bind_group.clone(),
-            false => targets.verdicts(gpu, layouts).bind_group.clone(),
-        });
-        let color = match finish {
-            Finish::Forward => {
-                let [r, g, b] = exposed.background.map(|c| c * exposed.exposure);
-                cleared(&targets.ldr_view, tone_map::displayed([r, g, b]))
-            }
-            Finish::Darkroom if added => continued(&targets.hdr(gpu).samples),
-            Finish::Darkroom => {
-                // A negative share to be shown as it is marks what is no surface.
-                let [r, g, b] = exposed.background.map(half_float).map(f64::from);
-                cleared(&targets.hdr(gpu).samples, [r, g, b, -1.0])
-            }
-        };
-        gpu.check()?;
-        let attachments = Attachments {
-            color: color.ok_or_else(no_targets)?,
-            depth_stencil: if shadowed || added { read_only(&depth_stencil) } else { cleared_depth(&depth_stencil) },
-            verdicts: verdicts.as_ref(),
-            timestamp_writes: timer.pass(spans.forward()).filter(|_| part.solid),
-        };
-        self.forward.encode(&mut encoder, attachments, &self.frame, scene, step, draws);
-        gpu.queue.submit([encoder.finish()]);
-        Ok(())
-    }
-
-    /// Renders the outputs of `kinds`, always at one sample per pixel.
-    ///
-    /// # Errors
-    /// As for [`Renderer::picture`].
-    pub fn aovs(&mut self, view: &View, settings: &Settings, kinds: &[AovKind]) -> Result<Aovs, RenderError> {
-        let gpu = self.gpu;
-        let chosen = self.scene.chosen(settings)?;
-        if self.measured.as_ref().is_none_or(|m| m.targets.size != view.size) {
-            self.measured = None;
-            self.measured = Some(Measured {
-                attributes: AttributePass::default(),
-                shadow: ShadowPass::new(gpu, &self.scene.shadows),
-                mask: MaskPass::new(gpu, &self.layouts),
-                targets: Attributes::new(gpu, &self.layouts, view.size)?,
-            });
-            gpu.check()?;
-        }
-        let Some(Measured { attributes, shadow, mask, targets }) = &mut self.measured else {
-            return Err(no_targets());
-        };
-        self.scene.arrange(gpu, view);
-        let exposed = Exposed::new(&self.scene, &chosen, settings.exposure, view);
-        let placements = self.scene.draws.order.iter().map(|&i| &self.scene.instances[i].world_from_object);
-        self.frame.update(gpu, &self.layouts, view, &exposed.shading(), placements, |_, _| true)?;
-        let encoder = || gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-
-        let mut first = encoder();
-        attributes.encode(gpu, &self.layouts, &mut first, targets, &self.frame, &self.scene);
-        gpu.queue.submit([first.finish()]);
-        let mut out = Aovs { size: view.size, ..Aovs::default() };
-        attribute_outputs::fill(&mut out, gpu, targets, view, kinds)?;
-
-        for (kind, counting, what, images) in [
-            (AovKind::Shadow, Counting::Verdict, Mask::Reached, &mut out.shadow),
-            (AovKind::Stencil, Counting::Raw, Mask::Count, &mut out.stencil),
-        ] {
-            if !kinds.contains(&kind) {
-                continue;
-            }
-            if settings.shadows {
-                let kinds: Vec<LightKind> = chosen.iter().map(|&l| self.scene.lights[l].kind).collect();
-                self.scene.plan(gpu, view, &chosen, &kinds, settings, counting)?;
-                if targets.stored_depth.is_some() {
-                    self.scene.plan_tiles(gpu, settings)?;
-                }
-            }
-            for light in 0..chosen.len() {
-                let mut encoder = encoder();
-                if settings.shadows {
-                    shadow.encode(&mut encoder, targets, &self.scene.shadows, light, &gpu.device);
-                }
-                images.push(mask.read(gpu, encoder, targets, &self.frame, light as u32, what)?);
-            }
-        }
-        Ok(out)
-    }
-}
-
-/// Part of a frame. One is enough unless shadows fall on blended surfaces, or there are more lights than a texel of
-/// verdicts has bits.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct Part {
-    /// Of the frame's lights.
-    lights: Range<usize>,
-    /// Draws solid surfaces.
-    solid: bool,
-    /// Draws blended surfaces, which are lit by all lights at once: they have shadows if one texel holds all verdicts.
-    blended: bool,
-}
-
-/// The parts of a frame in order.
-fn parts(lights: usize, shadows: bool, blends: bool) -> Vec<Part> {
-    if !shadows || lights == 0 {
-        return vec![Part { lights: 0..lights, solid: true, blended: blends }];
-    }
-    let starts = (0..lights).step_by(verdict_pass::LIGHTS);
-    let solid = starts.map(|start| {
-        let lights = start..lights.min(start + verdict_pass::LIGHTS);
-        Part { lights, solid: true, blended: false }
-    });
-    let blended = Part { lights: 0..lights, solid: false, blended: true };
-    solid.chain(blends.then_some(blended)).collect()
-}
-
-/// Light of a frame, scaled to the range of half floats.
-#[derive(Debug)]
-struct Exposed {
-    lights: Vec<LightRecord>,
-    ambient: [f32; 3],
-    background: [f32; 3],
-    pre_exposure: f32,
-    /// From pre-exposed radiance to the picture's; meaningless where it is measured.
-    exposure: f32,
-}
-
-impl Exposed {
-    fn new(scene: &SceneOnGpu, chosen: &[usize], exposure: Exposure, view: &View) -> Self {
-        let lit = chosen.iter().map(|&l| &scene.lights[l]);
-        let constant = [scene.ambient, scene.background, scene.emission];
-        let pre_exposure = lights::pre_exposure(lit, &scene.bounds, &constant);
-        let record = |&l: &usize| lights::record(&scene.lights[l], view, pre_exposure, scene.shapes.of_light[l]);
-        Self {
-            lights: chosen.iter().map(record).collect(),
-            ambient: scene.ambient.map(|c| c * pre_exposure),
-            background: scene.background.map(|c| c * pre_exposure),
-            pre_exposure,
-            exposure: match exposure {
-                Exposure::Auto => 1.0,
-                Exposure::Ev(stops) => (stops.exp2() / pre_exposure).clamp(0.0, f32::MAX),
-            },
-        }
-    }
-
-    /// What a picture finished so shows of the scene's lights; each has its share of the error.
-    fn precision(&self, scene: &SceneOnGpu, finish: Finish) -> lights::Precision {
-        let step = match finish {
-            Finish::Forward => lights::DISPLAY_STEP / f64::from(self.exposure),
-            Finish::Darkroom => lights::HALF_FLOAT_STEP,
-        };
-        lights::Precision {
-            step: step / self.lights.len().max(1) as f64,
-            pre_exposure: self.pre_exposure.into(),
-            reflectance: lights::greatest_reflectance(scene.roughness),
-        }
-    }
-
-    fn shading(&self) -> Shading<'_> {
-        let Self { lights, ambient, pre_exposure, exposure, .. } = self;
-        Shading { lights, ambient: *ambient, pre_exposure: *pre_exposure, exposure: *exposure }
-    }
-}
-
-/// Numbers what is timed: verdicts, forward, develop, then each light's volumes.
-#[derive(Clone, Copy, Debug)]
-struct Spans {
-    shadows: bool,
-    darkroom: bool,
-    /// Lights that are timed.
-    lights: usize,
-}
-
-impl Spans {
-    fn forward(self) -> usize {
-        usize::from(self.shadows)
-    }
-
-    fn develop(self) -> usize {
-        self.forward() + 1
-    }
-
-    fn light(self, light: usize) -> Option<usize> {
-        (self.shadows && light < self.lights).then_some(self.develop() + usize::from(self.darkroom) + light)
-    }
-
-    fn count(self) -> usize {
-        self.develop() + usize::from(self.darkroom) + if self.shadows { self.lights } else { 0 }
-    }
 }
 
 fn no_targets() -> RenderError {
     RenderError::Device("no render targets".to_owned())
-}
-
-/// The nearest finite half float that is not negative.
-fn half_float(value: f32) -> f32 {
-    f16::from_f32(value.clamp(0.0, 65504.0)).to_f32()
 }
 
 /// What is known of a light whose shadows nobody asked for.
@@ -551,7 +311,7 @@ mod tests {
     use super::*;
     use crate::GpuOptions;
     use zfail_plan::glam::{DAffine3, DVec3};
-    use zfail_plan::scene::{Instance, Light, LightShape, Material, Mesh, Primitive};
+    use zfail_plan::scene::{Ground, Instance, LightShape, Material, Mesh, Primitive, Sky};
     use zfail_plan::view::Projection;
 
     /// A triangle under more than one light, before a background.
@@ -594,34 +354,31 @@ mod tests {
         let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
         let world_from_view = DAffine3::from_translation(DVec3::new(0.0, 0.0, 2.5));
         let view = View { world_from_view, projection, size: [64, 64] };
-        for unlit in [false, true] {
-            let mut renderer = Renderer::new(&gpu, &scene(unlit)).expect("a renderer");
-            let mut direct = |settings: &Settings| {
-                renderer.draw(&view, settings, Finish::Forward).expect("a frame");
-                read_back::texture(&gpu, &renderer.targets.as_ref().expect("targets").ldr).expect("texels")
-            };
-            let settings = Settings { exposure: Exposure::Ev(0.5), ..Settings::default() };
-            let frames = [direct(&settings), direct(&Settings { shadows: false, ..settings.clone() })];
-            let brighter = direct(&Settings { exposure: Exposure::Ev(0.6), ..settings.clone() });
-            let developed = renderer.picture(&view, &settings).expect("a picture").0.rgba8;
-            let difference = |a: &[u8]| a.iter().zip(&developed).map(|(a, b)| a.abs_diff(*b)).max();
-            // Half floats keep 11 bits of radiance.
-            assert!(frames.iter().all(|frame| difference(frame) <= Some(1)), "{:?}", difference(&frames[0]));
-            assert!(difference(&brighter) > Some(1), "the comparison can fail");
+        let direct = |renderer: &mut Renderer<'_>, settings: &Settings| {
+            renderer.draw(&view, settings, Finish::Forward).expect("a frame");
+            read_back::texture(&gpu, &renderer.targets.as_ref().expect("targets").ldr).expect("texels")
+        };
+        let sky = Some(Sky { zenith: [0.2, 0.4, 0.9], horizon: [1.1, 0.9, 0.8], nadir: [0.2, 0.15, 0.1] });
+        let ground = Some(Ground { height: -0.9, center: [0.0; 2], radius: 9.0 });
+        let plain = scene(false);
+        for scene in [
+            scene(true),
+            Scene { sky, ..plain.clone() },
+            Scene { ground, ..plain.clone() },
+            Scene { sky, ground, lights: plain.lights[..1].to_vec(), ..plain.clone() },
+            plain,
+        ] {
+            let mut renderer = Renderer::new(&gpu, &scene).expect("a renderer");
+            for shadows in [true, false] {
+                let settings = Settings { shadows, exposure: Exposure::Ev(0.5), ..Settings::default() };
+                let frame = direct(&mut renderer, &settings);
+                let brighter = direct(&mut renderer, &Settings { exposure: Exposure::Ev(0.6), ..settings.clone() });
+                let developed = renderer.picture(&view, &settings).expect("a picture").0.rgba8;
+                let difference = |a: &[u8]| a.iter().zip(&developed).map(|(a, b)| a.abs_diff(*b)).max();
+                // Half floats keep 11 bits of radiance.
+                assert!(difference(&frame) <= Some(1), "{:?}", difference(&frame));
+                assert!(difference(&brighter) > Some(1), "the comparison can fail");
+            }
         }
-    }
-
-    #[test]
-    fn many_lights_are_divided() {
-        let whole = |lights: usize, blended| Part { lights: 0..lights, solid: true, blended };
-        assert_eq!(parts(50, false, true), [whole(50, true)]);
-        assert_eq!(parts(32, true, false), [whole(32, false)]);
-        assert_eq!(parts(32, true, true), [whole(32, false), Part { solid: false, ..whole(32, true) }]);
-        let divided = parts(50, true, true);
-        assert_eq!(divided.iter().map(|p| p.lights.clone()).collect::<Vec<_>>(), [0..32, 32..50, 0..50]);
-        assert_eq!(
-            divided.iter().map(|p| [p.solid, p.blended]).collect::<Vec<_>>(),
-            [[true, false], [true, false], [false, true]]
-        );
     }
 }

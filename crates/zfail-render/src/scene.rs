@@ -4,6 +4,7 @@ use crate::draw_list::{DrawList, material_slots};
 use crate::geometry::MeshBuffers;
 use crate::layouts::Layouts;
 use crate::shapes::Shapes;
+use crate::surroundings::Surroundings;
 use crate::{Gpu, RenderError, Settings, check, materials};
 use glam::DVec3;
 use zfail::{Caster, Counting, Frame, LightStats, MeshId, ShadowLight, Shadows, Silhouettes, Tiles};
@@ -29,8 +30,9 @@ pub struct SceneOnGpu {
     pub instance_bounds: Vec<Bounds>,
     /// Of every mesh, object space.
     mesh_bounds: Vec<Bounds>,
-    pub ambient: [f32; 3],
-    pub background: [f32; 3],
+    pub surroundings: Surroundings,
+    /// Stops, where those of the lights are known.
+    pub exposure: Option<f32>,
     /// Radiance of the strongest emission.
     pub emission: [f32; 3],
     /// The least roughness of any material.
@@ -79,8 +81,8 @@ impl SceneOnGpu {
             bounds: Bounds::EMPTY,
             instance_bounds: Vec::new(),
             mesh_bounds: scene.meshes.iter().map(Mesh::bounds).collect(),
-            ambient: scene.ambient,
-            background: scene.background,
+            surroundings: Surroundings::new(gpu, scene)?,
+            exposure: scene.exposure,
             emission,
             roughness: scene.materials.iter().map(least_roughness).fold(1.0, f64::min),
             shadows,
@@ -138,6 +140,12 @@ impl SceneOnGpu {
         }
         self.lights.clone_from(&scene.lights);
         Ok(rebuilt)
+    }
+
+    /// Takes from `scene` what it stands in.
+    pub fn set_surroundings(&mut self, gpu: &Gpu, scene: &Scene) -> Result<(), RenderError> {
+        self.surroundings = Surroundings::new(gpu, scene)?;
+        Ok(())
     }
 
     /// Takes from `scene` which instances cast shadows.
@@ -209,23 +217,25 @@ impl SceneOnGpu {
         }
     }
 
-    /// Plans and uploads the volumes of `chosen` lights, taken as `kinds`.
+    /// Plans and uploads the volumes of lights, each taken as a kind, with shadows on `ground` beside those on surfaces.
     pub fn plan(
         &mut self,
         gpu: &Gpu,
         view: &View,
-        chosen: &[usize],
-        kinds: &[LightKind],
+        chosen: &[(usize, LightKind)],
         settings: &Settings,
         counting: Counting,
+        ground: Option<Bounds>,
     ) -> Result<Vec<LightStats>, RenderError> {
         let excluded: Vec<Vec<usize>> = chosen
             .iter()
-            .map(|&l| self.lights[l].excluded.iter().filter_map(|&instance| self.caster_of[instance]).collect())
+            .map(|&(l, _)| self.lights[l].excluded.iter().filter_map(|&instance| self.caster_of[instance]).collect())
             .collect();
         let lights: Vec<ShadowLight<'_>> =
-            kinds.iter().zip(&excluded).map(|(&kind, excluded)| ShadowLight { kind, excluded }).collect();
-        let (measures, receivers) = (settings.measures(), &[self.bounds]);
+            chosen.iter().zip(&excluded).map(|(&(_, kind), excluded)| ShadowLight { kind, excluded }).collect();
+        let measures = settings.measures();
+        let boxes = [self.bounds, ground.unwrap_or(Bounds::EMPTY)];
+        let receivers = if ground.is_some() { &boxes[..] } else { &boxes[..1] };
         if self.posed && measures.silhouettes == Silhouettes::WhereCheaper {
             self.shadows.set_cost_model(gpu.costs());
         }

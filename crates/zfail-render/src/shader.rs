@@ -20,12 +20,47 @@ macro_rules! forward {
         [forward!($vertex, "forward_open"), forward!($vertex, "forward_single"), forward!($vertex, "forward_multi")]
     };
     ($vertex:literal, $entry:literal) => {
-        program!($entry, "limits", "frame", "shape", "light", $vertex, "material", "tone_map", "shade", $entry)
+        program!(
+            $entry,
+            "limits",
+            "frame",
+            "shape",
+            "light",
+            $vertex,
+            "material",
+            "reflection",
+            "sky",
+            "sky_light",
+            "tone_map",
+            "shade",
+            $entry
+        )
+    };
+}
+
+macro_rules! ground {
+    ($entry:literal) => {
+        program!(
+            $entry,
+            "limits",
+            "frame",
+            "shape",
+            "light",
+            "vertex_plain",
+            "sky",
+            "tone_map",
+            "backdrop",
+            "ground",
+            $entry
+        )
     };
 }
 
 pub const DEPTH: Program = program!("depth", "depth");
 pub const CUTOUT: Program = program!("cutout", "frame", "vertex_textured", "material", "cutout");
+pub const OPEN_SKY: Program =
+    program!("open sky", "limits", "frame", "screen", "sky", "tone_map", "backdrop", "open_sky");
+const GROUND: [Program; 2] = [ground!("ground_single"), ground!("ground_multi")];
 pub const VERDICT: Program = program!("verdict", "screen", "verdict");
 pub const DESCRIBE: Program =
     program!("describe", "limits", "frame", "octahedral", "vertex_mapped", "material", "describe");
@@ -49,6 +84,11 @@ pub fn forward(vertices: Vertices, verdicts: Option<u32>) -> Program {
         Some(1) => 1,
         Some(_) => 2,
     }]
+}
+
+/// The ground, with `samples` verdicts per pixel where it reads them.
+pub fn ground(samples: u32) -> Program {
+    GROUND[usize::from(samples > 1)]
 }
 
 pub fn meter(samples: u32) -> Program {
@@ -75,7 +115,8 @@ mod tests {
     use naga::valid::{Capabilities, ValidationFlags, Validator};
 
     fn programs() -> Vec<Program> {
-        [&[DEPTH, CUTOUT, VERDICT, DESCRIBE, MASK][..], FORWARD.as_flattened(), &METER, &DEVELOP].concat()
+        [&[DEPTH, CUTOUT, OPEN_SKY, VERDICT, DESCRIBE, MASK][..], FORWARD.as_flattened(), &GROUND, &METER, &DEVELOP]
+            .concat()
     }
 
     fn validate(source: &str) -> Result<naga::Module, String> {
@@ -144,7 +185,24 @@ mod tests {
             shade,
             "Frame",
             FrameUniform,
-            [view_per_ndc, size, ambient, orthographic, pre_exposure, exposure, light_count, lights]
+            [
+                view_per_ndc,
+                size,
+                ambient,
+                orthographic,
+                up,
+                pre_exposure,
+                background,
+                exposure,
+                zenith,
+                light_count,
+                horizon,
+                all_lights,
+                nadir,
+                per_ground_radius,
+                ground,
+                lights
+            ]
         );
         assert_layout!(shade, "Slot", SlotUniform, [u, v]);
         assert_layout!(

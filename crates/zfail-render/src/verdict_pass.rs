@@ -7,6 +7,7 @@ use crate::geometry::Vertices;
 use crate::layouts::Layouts;
 use crate::pipeline::{ADD, Recipe, cleared, cleared_depth, continued, continued_depth, depth_test};
 use crate::scene::SceneOnGpu;
+use crate::surroundings::VisibleGround;
 use crate::targets::VERDICTS;
 use crate::timing::Timer;
 use crate::{Gpu, shader};
@@ -20,6 +21,9 @@ const PER_CHANNEL: usize = 8;
 
 /// What a depth pipeline depends on: winding, two sides, and for surfaces with alpha whether they have a texture.
 type Key = (bool, bool, Option<bool>);
+
+/// Of the ground.
+const GROUND: Key = (false, false, None);
 
 /// Pipelines of the pass for one sample count.
 #[derive(Debug)]
@@ -40,8 +44,9 @@ pub struct VerdictTargets<'a> {
     pub depth_stencil: &'a wgpu::TextureView,
     /// The device and the depth for reading, if lights are counted by tiles.
     pub tiles: Option<(&'a wgpu::Device, &'a wgpu::TextureView)>,
-    /// Verdicts are on what is nearest, blended surfaces included; otherwise on what is behind them.
+    /// Verdicts are on what is nearest, blended surfaces included; otherwise on what is behind them, and on the ground.
     pub layered: bool,
+    pub ground: Option<VisibleGround<'a>>,
 }
 
 /// One light of the pass.
@@ -87,13 +92,14 @@ impl VerdictPass {
         Self { samples, bits, depth: HashMap::new(), volumes: shadows.pipelines(&gpu.device, &target), keep }
     }
 
-    /// Makes the pipelines that the scene's draws lack, those of blended surfaces if `layered`.
+    /// Makes the pipelines that the scene's draws and its ground lack, those of blended surfaces if `layered`.
     pub fn prepare(&mut self, gpu: &Gpu, layouts: &Layouts, scene: &SceneOnGpu, layered: bool) {
         let (samples, bits) = (self.samples, self.bits);
         for draw in draws(scene, layered) {
             let key = key(scene.draws.parts[draw.part].look, draw);
             self.depth.entry(key).or_insert_with(|| create(gpu, layouts, samples, bits, key));
         }
+        self.depth.entry(GROUND).or_insert_with(|| create(gpu, layouts, samples, bits, GROUND));
     }
 
     /// Fills depth and verdicts, the first light's in the lowest bit of red, or the only one's in the stencil; `timer` comes
@@ -107,7 +113,7 @@ impl VerdictPass {
         lights: impl Iterator<Item = Verdict>,
         timer: (&Timer, Option<usize>),
     ) {
-        let &VerdictTargets { verdicts, depth_stencil, tiles, layered } = targets;
+        let &VerdictTargets { verdicts, depth_stencil, tiles, layered, ground } = targets;
         let timestamps = timer.1.and_then(|span| timer.0.pass(span));
         let (begin, end) = (timestamps.clone(), timestamps.clone());
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -132,6 +138,10 @@ impl VerdictPass {
                 pass.set_bind_group(1, &scene.materials[part.material], &[]);
             }
             pass.draw_indexed(part.indices.clone(), 0, draw.slots.clone());
+        }
+        if let (Some(ground), Some(pipeline), false) = (ground, self.depth.get(&GROUND), layered) {
+            pass.set_pipeline(pipeline);
+            ground.draw(&mut pass, Vertices::Depth, &frame.instances, scene.draws.order.len() as u32);
         }
         if let Some((device, depth)) = tiles {
             // The tile pass reads depth, so the render pass is interrupted for it.

@@ -1,7 +1,7 @@
 //! Scenes for zfail: glTF 2.0 files and generated ones.
 //!
 //! In: a `.glb` or `.gltf` file. Out: a [`zfail_plan::scene::Scene`] and the notices about what was repaired or left
-//! out; with [`load_animated`] also its animations, as poses at any time. [`complete`] adds the light and the camera
+//! out; with [`load_animated`] also its animations, as poses at any time. A [`Setting`] adds the light and the camera
 //! that a file may lack, [`cut`] makes geometry of masked surfaces, and a [`SavedView`] sets a scene up as a user left it.
 
 mod animate;
@@ -15,8 +15,8 @@ mod saved_view;
 pub mod write;
 
 pub use animate::{Animated, Animation};
-pub use complete::complete;
+pub use complete::{Framing, GroundChoice, Setting, Sun, complete, fitting_ambient, fitting_ground, fitting_sky};
 pub use read::{
     FileInfo, Limits, LoadError, Treatment, extension_treatment, load, load_animated, load_variant, load_with,
 };
-pub use saved_view::{SavedView, SavedViewError};
+pub use saved_view::{SavedView, SavedViewError, Surroundings};

@@ -1,4 +1,4 @@
-//! A view of a scene that a user has set up: the eye, all lights, and what casts.
+//! A view of a scene that a user has set up: the eye, all lights, what the scene stands in, and what casts.
 //!
 //! In: a scene, changed by hand, and a camera; or the JSON text of a view. Out: the text; or the changes, made again in a
 //! scene that was loaded from the same file. Numbers come back bit for bit.
@@ -7,7 +7,7 @@ mod text;
 
 use std::path::Path;
 use std::{fs, io};
-use zfail_plan::scene::{Camera, Light, LightKind, Scene};
+use zfail_plan::scene::{Camera, Ground, Light, LightKind, Scene, Sky};
 use zfail_plan::view::Projection;
 
 /// What `zfail render --view` takes from a file.
@@ -17,8 +17,37 @@ pub struct SavedView {
     pub camera: Camera,
     /// All lights; they replace the scene's.
     pub lights: Vec<Light>,
+    /// What the scene stands in; `None` in files of older programs, which leave that as it is.
+    pub surroundings: Option<Surroundings>,
     /// By instance, whether it casts shadows.
     pub casts: Vec<bool>,
+}
+
+/// Light from all sides, and what is seen and shadowed around a scene; as in [`Scene`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surroundings {
+    /// [`Scene::ambient`].
+    pub ambient: [f32; 3],
+    /// [`Scene::background`].
+    pub background: [f32; 3],
+    /// [`Scene::sky`].
+    pub sky: Option<Sky>,
+    /// [`Scene::ground`].
+    pub ground: Option<Ground>,
+}
+
+impl Surroundings {
+    /// Those of `scene`.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        let Scene { ambient, background, sky, ground, .. } = *scene;
+        Self { ambient, background, sky, ground }
+    }
+
+    fn set(&self, scene: &mut Scene) {
+        (scene.ambient, scene.background) = (self.ambient, self.background);
+        (scene.sky, scene.ground) = (self.sky, self.ground);
+    }
 }
 
 /// Why there is no such view, or not of this scene.
@@ -45,6 +74,7 @@ impl SavedView {
         Self {
             camera: camera.clone(),
             lights: scene.lights.clone(),
+            surroundings: Some(Surroundings::of(scene)),
             casts: scene.instances.iter().map(|instance| instance.casts_shadow).collect(),
         }
     }
@@ -69,6 +99,10 @@ impl SavedView {
         check_camera(&self.camera).map_err(|what| SavedViewError::Value(format!("its camera {what}")))?;
         for (i, light) in self.lights.iter().enumerate() {
             check_light(light, scene).map_err(|what| SavedViewError::Value(format!("light {i} {what}")))?;
+        }
+        if let Some(surroundings) = &self.surroundings {
+            check_surroundings(surroundings).map_err(|what| SavedViewError::Value(what.to_owned()))?;
+            surroundings.set(scene);
         }
         scene.lights.clone_from(&self.lights);
         for (instance, &casts) in scene.instances.iter_mut().zip(&self.casts) {
@@ -99,6 +133,19 @@ fn check_camera(camera: &Camera) -> Result<(), String> {
         }
     };
     if fine { Ok(()) } else { Err(format!("has the impossible projection {:?}", camera.projection)) }
+}
+
+fn check_surroundings(surroundings: &Surroundings) -> Result<(), &'static str> {
+    let Surroundings { ambient, background, sky, ground } = surroundings;
+    let colors = sky.map_or(vec![], |sky| vec![sky.zenith, sky.horizon, sky.nadir]);
+    if !colors.iter().chain([ambient, background]).flatten().all(|c| c.is_finite() && *c >= 0.0) {
+        return Err("its sky has a colour that is negative or not finite");
+    }
+    let fine = |g: &Ground| g.height.is_finite() && g.center.iter().all(|x| x.is_finite()) && g.radius > 0.0;
+    match ground {
+        Some(ground) if !(fine(ground) && ground.radius.is_finite()) => Err("its ground is nowhere, or has no extent"),
+        _ => Ok(()),
+    }
 }
 
 fn check_light(light: &Light, scene: &Scene) -> Result<(), String> {

@@ -29,7 +29,7 @@ pub struct Outcome {
 pub fn picture(ui: &mut Ui, session: &mut Session, hand: &mut Hand, handles: bool, seconds: f64) -> Outcome {
     let response = ui.allocate_response(ui.available_size(), Sense::click_and_drag());
     let area = response.rect;
-    session.aspect = f64::from(area.aspect_ratio()).clamp(0.01, 100.0);
+    session.fit(f64::from(area.aspect_ratio()).clamp(0.01, 100.0));
     // Points are precise enough for what a hand does.
     let view = session.view([area.width(), area.height()].map(|side| (side as u32).max(1)));
     // Pictures from elsewhere have lights elsewhere.

@@ -4,6 +4,7 @@
 //! since somebody last looked ([`Changes`]).
 
 mod lights;
+mod surroundings;
 #[cfg(test)]
 mod tests;
 
@@ -12,6 +13,7 @@ use crate::camera::{Mode, Rig};
 use crate::playback::Playback;
 use lights::Origin;
 use std::mem;
+use surroundings::Spare;
 use zfail_figures::Overlay;
 use zfail_plan::scene::{Bounds, Pose, Scene};
 use zfail_plan::view::View;
@@ -46,6 +48,8 @@ pub struct Changes {
     pub casting: bool,
     /// Where things are.
     pub pose: bool,
+    /// Light from all sides, background and ground.
+    pub surroundings: bool,
     /// The picture, by these or by camera and settings.
     pub picture: bool,
 }
@@ -72,7 +76,9 @@ pub struct Session {
     /// Since the last [`Self::upload`] and the last picture.
     pub changes: Changes,
     /// The picture's aspect ratio.
-    pub aspect: f64,
+    aspect: f64,
+    /// What the panel switches between.
+    spare: Spare,
     bounds: Bounds,
     pose: Pose,
 }
@@ -100,6 +106,7 @@ impl Session {
             selected: None,
             changes: Changes { picture: true, ..Changes::default() },
             aspect: 1.0,
+            spare: Spare::of(&scene),
             bounds,
             pose: Pose::of(&scene),
             rest: animated,
@@ -111,6 +118,23 @@ impl Session {
     #[must_use]
     pub fn view(&self, size: [u32; 2]) -> View {
         self.rig.camera.view(size, &self.bounds)
+    }
+
+    /// Takes the aspect ratio of the picture; a camera that was made for the scene is made for it again.
+    pub fn fit(&mut self, aspect: f64) {
+        if aspect == self.aspect {
+            return;
+        }
+        self.aspect = aspect;
+        let (Some(framing), Some(made)) = (&self.rest.framing, self.scene.cameras.len().checked_sub(1)) else { return };
+        let camera = framing.camera(aspect);
+        for scene in [&mut self.scene, &mut self.rest.scene] {
+            scene.cameras[made] = camera.clone();
+        }
+        if self.rig.preset == Some(made) {
+            self.rig.take(&camera, made, &self.bounds);
+            self.touch();
+        }
     }
 
     /// World bounds of the scene as it is now.
@@ -185,6 +209,9 @@ impl Session {
         }
         if changes.lights {
             renderer.set_lights(&self.scene)?;
+        }
+        if changes.surroundings {
+            renderer.set_surroundings(&self.scene)?;
         }
         if changes.pose {
             self.list_lights();

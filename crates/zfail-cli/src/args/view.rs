@@ -1,11 +1,14 @@
 //! `zfail view`
 
+use super::loading::Limit;
 use super::{
-    AlphaShadows, Device, Limit, Loading, Size, parse_exposure, parse_samples, parse_terminator, technique_parser,
+    AlphaShadows, Device, Loading, Size, Sunlight, Surroundings, parse_exposure, parse_samples, parse_terminator,
+    technique_parser,
 };
 use clap::Args;
 use std::path::PathBuf;
 use zfail_render::{Exposure, Technique, Terminator};
+use zfail_scene::GroundChoice;
 
 /// `zfail view`
 #[derive(Args, Clone, Debug)]
@@ -31,6 +34,10 @@ pub struct View {
     /// How light ends where smooth surfaces turn away from it.
     #[arg(long, value_name = "soft|exact", default_value = "soft", value_parser = parse_terminator)]
     pub terminator: Terminator,
+    #[command(flatten)]
+    pub sunlight: Sunlight,
+    #[command(flatten)]
+    pub surroundings: Surroundings,
     /// Begin without panels; H shows them.
     #[arg(long)]
     pub no_panels: bool,
@@ -64,6 +71,16 @@ impl Loading {
     }
 }
 
+impl Surroundings {
+    /// The flags without which a saved view does not fit the scene: it holds what catches shadows, but no surfaces.
+    pub fn flags(&self) -> Vec<String> {
+        match self.ground {
+            GroundChoice::Height(height) => vec![format!("--ground={height}")],
+            GroundChoice::Auto | GroundChoice::None => Vec::new(),
+        }
+    }
+}
+
 impl Device {
     /// The flags that choose this device.
     pub fn flags(&self) -> Vec<String> {
@@ -82,12 +99,15 @@ mod tests {
     #[test]
     fn flags_ask_for_what_was_asked_for() {
         let view = |words: &[&str]| match Cli::try_parse_from([&["zfail", "view", "a.glb"], words].concat()) {
-            Ok(Cli { command: Command::View(view) }) => [view.loading.flags(), view.device.flags()].concat(),
+            Ok(Cli { command: Command::View(view) }) => {
+                [view.loading.flags(), view.surroundings.flags(), view.device.flags()].concat()
+            }
             other => panic!("{other:?}"),
         };
         assert!(view(&[]).is_empty());
         for words in [
             &["--limit", "memory=3GiB", "--alpha-shadows=cut=0.5", "--blended-shadows", "--variant", "2"][..],
+            &["--ground=-0.25"],
             &["--limit", "image-side=9", "--alpha-shadows=off", "--backend", "vulkan", "--adapter", "x y"],
         ] {
             let flags = view(words);

@@ -2,7 +2,7 @@
 //!
 //! In: a SCENE argument. Out: everything about its frames that can be known before the clock runs.
 
-use crate::args;
+use crate::args::{self, Moment};
 use crate::error::Error;
 use crate::input;
 use zfail_plan::scene::{Bounds, Camera, Pose};
@@ -31,7 +31,8 @@ impl Course {
     /// # Errors
     /// If there is no such scene, or it cannot be used.
     pub fn new(name: &str, args: &args::Bench) -> Result<Self, Error> {
-        let mut animated = input::complete(name, &args.loading)?;
+        let moment = Moment { time: None, animation: None };
+        let mut animated = input::complete(name, &args.loading, Some(&moment), args.size.0, args.sunlight.bare())?;
         if !animated.animations.first().is_some_and(|animation| animation.moves_anything()) {
             animated
                 .scene

@@ -129,7 +129,9 @@ impl Report {
         Ok(Self {
             scene: scene.name.clone(),
             extensions: file.as_ref().map(extensions).unwrap_or_default(),
-            bounds: Some(scene.bounds()).filter(|b| !b.is_empty()).map(|Bounds { min, max }| [min.into(), max.into()]),
+            bounds: Some(scene.tight_bounds())
+                .filter(|b| !b.is_empty())
+                .map(|Bounds { min, max }| [min.into(), max.into()]),
             triangles: scene.instances.iter().map(|i| scene.meshes[i.mesh].triangles.len()).sum(),
             meshes: meshes.collect::<Result<_, _>>()?,
             instances: scene.instances.iter().map(InstanceReport::new).collect(),

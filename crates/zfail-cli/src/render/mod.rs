@@ -21,6 +21,7 @@ use destinations::Destinations;
 use overlays::Overlays;
 use results::Results;
 use zfail_render::{RenderError, Renderer, Settings};
+use zfail_scene::Animated;
 
 /// Renders what is asked for.
 ///
@@ -39,7 +40,8 @@ fn still(args: &args::Render) -> Result<(), Error> {
     let destinations = Destinations::new(args, None)?;
     destinations.check(&args.aovs, false)?;
     destinations.folders(&args.aovs).for_each(output::sweep);
-    let mut scene = input::at_moment(input::complete(&args.scene.scene, &args.scene.loading)?, &args.moment)?;
+    let animated = load(args, args.moment.shown())?;
+    let mut scene = input::at_moment(animated, &args.moment)?;
     console::notices(&scene.notices, args.verbosity.quiet);
     let camera = input::eye(&mut scene, &args.camera, args.view.as_deref())?;
     let view = camera.view(args.size.0, &scene.bounds());
@@ -64,6 +66,12 @@ fn still(args: &args::Render) -> Result<(), Error> {
     let picture = results::encode_pixels(args.size.0, &results.pixels(format), format, None)?;
     outputs.add(destinations.picture, picture);
     outputs.commit()
+}
+
+/// The scene, completed for the pictures of `moment`, or at rest.
+fn load(args: &args::Render, moment: Option<&args::Moment>) -> Result<Animated, Error> {
+    let setting = args.sunlight.with(&args.surroundings);
+    input::complete(&args.scene.scene, &args.scene.loading, moment, args.size.0, setting)
 }
 
 fn settings(args: &args::Render, lights: &[usize]) -> Settings {

@@ -20,7 +20,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use zfail_plan::scene::{Bounds, Camera, Pose};
 use zfail_plan::view::{Projection, View};
-use zfail_render::{Renderer, Settings};
+use zfail_render::{Exposure, Renderer, Settings};
 use zfail_scene::Animated;
 
 /// A frame to be.
@@ -38,18 +38,20 @@ struct Frame {
 /// As [`super::run`]. The frames rendered before stay.
 pub fn run(args: &args::Render, numbers: Range<u32>) -> Result<(), Error> {
     let destinations = destinations(args, numbers.clone())?;
-    let mut animated = input::complete(&args.scene.scene, &args.scene.loading)?;
+    let mut animated = super::load(args, Some(&args.moment))?;
     let animation = input::animation(&animated, &args.moment)?;
     let camera = input::camera(&animated.scene, &args.camera)?;
     let lights = input::lights(&animated.scene, &args.lights)?;
-    let settings = settings(args, &lights);
+    let mut settings = settings(args, &lights);
     let stillness = stillness(&animated, animation, args.sequence.fps, &numbers);
     let notices: Vec<String> = animated.scene.notices.iter().cloned().chain(stillness).collect();
     console::notices(&notices, args.verbosity.quiet);
 
     let gpu = input::gpu(&args.device)?;
-    let request = Request::new(&(&gpu.info, &settings, asked(args), animation), &mut animated);
-    let views = views(&animated, animation, camera, args, numbers);
+    let metered = metered(&animated, animation, camera, args);
+    let request = Request::new(&(&gpu.info, &settings, asked(args), animation, &metered), &mut animated);
+    let times = numbers.map(|number| f64::from(number) / args.sequence.fps);
+    let views = views(&animated, animation, camera, args.size.0, times);
     let frames = views.zip(destinations).map(|((seconds, view), destinations)| {
         let sides = destinations.sides(&args.aovs, &lights);
         Frame { seconds, view, picture: destinations.picture, sides }
@@ -70,6 +72,15 @@ pub fn run(args: &args::Render, numbers: Range<u32>) -> Result<(), Error> {
     let mut overlays = Overlays::new(&gpu, &animated.scene, &args.overlays, &lights, args.technique)?;
     let progress = console::progress(missing.len(), args.verbosity.quiet);
     let mut pose = Pose::default();
+    let mut stops = Vec::new();
+    for (seconds, view) in &metered {
+        animated.pose_into(animation, *seconds, &mut pose);
+        renderer.set_pose(&pose).map_err(|e| failed(&e))?;
+        stops.push(renderer.metered(view, &Settings { samples: 1, ..settings.clone() }).map_err(|e| failed(&e))?);
+    }
+    if let Some(stops) = mean(&stops) {
+        settings.exposure = Exposure::Ev(stops);
+    }
     for (frame, request) in &missing {
         progress.set_message(frame.picture.display().to_string());
         animated.pose_into(animation, frame.seconds, &mut pose);
@@ -152,28 +163,48 @@ fn asked(args: &args::Render) -> args::Render {
     asked
 }
 
+/// Times and small views at which exposure is measured, once for all frames: over the whole animation, so that every part of
+/// it is exposed alike, whichever frames are asked for. Empty if exposure is given.
+fn metered(animated: &Animated, animation: usize, camera: usize, args: &args::Render) -> Vec<(f64, View)> {
+    /// Moments, and the longer side of their pictures in pixels.
+    const MOMENTS: u32 = 5;
+    const SIDE: f64 = 320.0;
+    if args.exposure != Exposure::Auto {
+        return Vec::new();
+    }
+    let duration = animated.animations.get(animation).map_or(0.0, |animation| animation.duration);
+    let times = (0..MOMENTS).map(|moment| duration * f64::from(moment) / f64::from(MOMENTS));
+    let scale = (SIDE / f64::from(args.size.0[0].max(args.size.0[1]))).min(1.0);
+    let size = args.size.0.map(|side| ((f64::from(side) * scale).round() as u32).max(1));
+    views(animated, animation, camera, size, times).collect()
+}
+
+/// The exposure between all of these.
+fn mean(stops: &[f32]) -> Option<f32> {
+    (!stops.is_empty()).then(|| stops.iter().sum::<f32>() / stops.len() as f32)
+}
+
 /// Time and view of each frame.
 fn views(
     animated: &Animated,
     animation: usize,
     camera: usize,
-    args: &args::Render,
-    numbers: Range<u32>,
+    size: [u32; 2],
+    times: impl Iterator<Item = f64>,
 ) -> impl Iterator<Item = (f64, View)> {
     let camera_at_rest = &animated.scene.cameras[camera];
     // Only the far plane of an orthographic view depends on where things are.
     let orthographic = matches!(camera_at_rest.projection, Projection::Orthographic { .. });
     let mut posed = orthographic.then(|| animated.scene.clone());
     let mut pose = Pose::default();
-    numbers.map(move |number| {
-        let seconds = f64::from(number) / args.sequence.fps;
+    times.map(move |seconds| {
         animated.pose_into(animation, seconds, &mut pose);
         let bounds = posed.as_mut().map_or(Bounds::EMPTY, |scene| {
             scene.set_pose(&pose);
             scene.bounds()
         });
         let world_from_view = pose.cameras.get(camera).copied().unwrap_or(camera_at_rest.world_from_view);
-        (seconds, Camera { world_from_view, ..camera_at_rest.clone() }.view(args.size.0, &bounds))
+        (seconds, Camera { world_from_view, ..camera_at_rest.clone() }.view(size, &bounds))
     })
 }
 

@@ -55,6 +55,14 @@ impl Mesh {
         Bounds::of(self.triangles.iter().flatten().map(|&v| self.position(v)))
     }
 
+    /// The vertices that triangles use, ascending.
+    #[must_use]
+    pub fn used_vertices(&self) -> Vec<u32> {
+        let mut used = vec![false; self.positions.len()];
+        self.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
+        (0..).zip(used).filter_map(|(v, used)| used.then_some(v)).collect()
+    }
+
     /// Position of vertex `v`.
     ///
     /// # Panics

@@ -52,6 +52,9 @@ pub struct Scene {
     pub sky: Option<Sky>,
     /// A ground that shows shadows and is otherwise not there.
     pub ground: Option<Ground>,
+    /// The stops that suit the lights, for automatic exposure to take instead of measuring the picture: set where lights
+    /// and surroundings were made for each other.
+    pub exposure: Option<f32>,
     /// Whether blended and transmissive surfaces cast shadows, as solid ones do.
     pub blended_casts: bool,
     /// What the loader repaired, replaced or left out, for the user to read.
@@ -83,7 +86,8 @@ pub struct Camera {
 }
 
 impl Scene {
-    /// World-space bounds of the instances' vertices, including those that cast no shadow; empty for an empty scene.
+    /// A world-space box around all instances, including those that cast no shadow; empty for an empty scene. It is made
+    /// of the boxes of meshes, so it may be larger than what it holds where those are turned; see [`Self::tight_bounds`].
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         let of_mesh: Vec<Bounds> = self.meshes.iter().map(Mesh::bounds).collect();
@@ -96,6 +100,17 @@ impl Scene {
             }
         }
         bounds
+    }
+
+    /// The smallest world-space box around all triangles of all instances; empty for an empty scene. Unlike
+    /// [`Self::bounds`] it reads every vertex of every instance.
+    #[must_use]
+    pub fn tight_bounds(&self) -> Bounds {
+        let used: Vec<Vec<u32>> = self.meshes.iter().map(Mesh::used_vertices).collect();
+        Bounds::of(self.instances.iter().flat_map(|instance| {
+            let (mesh, world_from_object) = (&self.meshes[instance.mesh], &instance.world_from_object);
+            used[instance.mesh].iter().map(|&v| world_from_object.transform_point3(mesh.position(v)))
+        }))
     }
 
     /// Whether triangle `triangle` of mesh `mesh` blocks light at all: blended materials let it through unless
@@ -130,4 +145,24 @@ pub fn world_triangle(mesh: &Mesh, world_from_object: &DAffine3, t: usize) -> [D
         let p = mesh.positions[v as usize];
         world_from_object.transform_point3(DVec3::new(p[0].into(), p[1].into(), p[2].into()))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tight_bounds_hold_vertices_and_not_their_boxes() {
+        // A diamond in its mesh, which is a square in the world; and a vertex that no triangle uses.
+        let positions =
+            [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0], [9.0, 9.0]].map(|[x, y]| [x, y, 0.0]).to_vec();
+        let mesh = Mesh { positions, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
+        let world_from_object = DAffine3::from_rotation_z(std::f64::consts::FRAC_PI_4);
+        let instance = Instance { name: String::new(), mesh: 0, world_from_object, casts_shadow: false };
+        let scene = Scene { meshes: vec![mesh], instances: vec![instance], ..Scene::default() };
+        let half = |bounds: Bounds| bounds.half().truncate();
+        assert!((half(scene.tight_bounds()) - glam::DVec2::splat(0.5_f64.sqrt())).length() < 1e-12);
+        assert!(half(scene.bounds()).x > 1.4, "boxes of turned boxes are larger, or this test could not fail");
+        assert!(Scene::default().tight_bounds().is_empty());
+    }
 }

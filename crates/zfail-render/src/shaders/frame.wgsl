@@ -35,12 +35,25 @@ struct Frame {
     ambient: vec3<f32>,
     // 1 for an orthographic camera, 0 for a perspective one.
     orthographic: f32,
+    // View space, unit: the world's +y.
+    up: vec3<f32>,
     // Scale from scene radiance to the radiance that shaders compute.
     pre_exposure: f32,
+    // Radiance of pixels without a surface where there is no sky, pre-exposed.
+    background: vec3<f32>,
     // Scale from that to the picture's, where it is known beforehand.
     exposure: f32,
+    // Radiance of the sky straight up, of horizontal directions and straight down, pre-exposed.
+    zenith: vec3<f32>,
     // Lights in use.
     light_count: u32,
+    horizon: vec3<f32>,
+    // And those that other passes draw, after them.
+    all_lights: u32,
+    nadir: vec3<f32>,
+    per_ground_radius: f32,
+    // View space: the middle of the ground.
+    ground: vec3<f32>,
     // The first lights once more: uniforms are read once for many pixels.
     lights: array<Light, UNROLLED>,
 }

@@ -85,6 +85,9 @@ fn shade(in: Fragment, front: bool, shadowed: u32) -> vec4<f32> {
         color = illumination(in, s, eye, shadowed);
         if !ADDED {
             color += frame.ambient * s.occlusion * ambient_reflectance(s, eye) + s.emissive;
+            if SKY {
+                color += s.occlusion * from_sky(s, eye);
+            }
         }
         color = min(color, vec3<f32>(BRIGHTEST));
     } else if ADDED {

@@ -12,6 +12,7 @@ mod track;
 pub(crate) use rig::{MAX_COORDINATE, Move, Node, Parent, Rig, Trs, placed};
 pub(crate) use track::{Interpolation, Track};
 
+use crate::complete::Framing;
 use crate::cut::{self, CutMesh};
 use crate::deform::{Body, Frame};
 use glam::DAffine3;
@@ -25,6 +26,8 @@ pub struct Animated {
     pub scene: Scene,
     /// In the order of the file.
     pub animations: Vec<Animation>,
+    /// How the last of the scene's cameras frames it, if [`crate::Setting::complete`] has added that.
+    pub framing: Option<Framing>,
     pub(crate) rig: Rig,
     pub(crate) bodies: Vec<Body>,
 }

@@ -69,7 +69,7 @@ pub(super) fn animated() -> Animated {
         scene.meshes[body.mesh].alike = alike(&body.sections);
     }
     let animation = Animation { name: "sway".into(), duration: PERIOD.into(), moves, morphs };
-    let mut animated = Animated { scene, animations: vec![animation], rig, bodies };
+    let mut animated = Animated { scene, animations: vec![animation], framing: None, rig, bodies };
     let mut rest = Pose::default();
     animated.pose_into(0, 0.0, &mut rest);
     animated.scene.set_pose(&rest);

@@ -47,7 +47,7 @@ impl Motion {
             animation.morphs = bodies.map(|(body, weights)| Morph { body, weights }).collect();
         }
         let bodies = self.bodies.into_iter().map(|(body, _)| body).collect();
-        Animated { scene, animations: self.animations, rig: self.rig, bodies }
+        Animated { scene, animations: self.animations, framing: None, rig: self.rig, bodies }
     }
 }
 

@@ -24,6 +24,9 @@ fn view() -> (Scene, SavedView) {
     let sun =
         Light { kind: LightKind::Directional { direction: -direction }, shape: Default::default(), ..light.clone() };
     scene.lights = vec![light, spot, sun];
+    let sky = Sky { zenith: [0.1, 1.0 / 3.0, 7e-20], horizon: [0.2; 3], nadir: [0.0; 3] };
+    (scene.sky, scene.ambient) = (Some(sky), [0.1, 0.7, 1e-9]);
+    scene.ground = Some(Ground { height: -1.0 / 3.0, center: [1e6 + 0.1, -2e-17], radius: PI });
     scene.instances[0].casts_shadow = false;
     let mut camera = scene.cameras[0].clone();
     camera.world_from_view.matrix3 =
@@ -41,6 +44,8 @@ fn a_view_comes_back_bit_for_bit() {
     let camera = read.apply(&mut loaded).expect("it fits");
     assert_eq!(format!("{camera:?}"), format!("{:?}", saved.camera));
     assert_eq!(format!("{:?}", loaded.lights), format!("{:?}", scene_then.lights));
+    assert_eq!(Surroundings::of(&loaded), Surroundings::of(&scene_then));
+    assert_ne!(Surroundings::of(&loaded), Surroundings::of(&scene()), "the comparison can fail");
     let casts = |scene: &Scene| scene.instances.iter().map(|i| i.casts_shadow).collect::<Vec<_>>();
     assert_eq!(casts(&loaded), casts(&scene_then));
     assert_ne!(casts(&loaded), casts(&scene()), "the comparison can fail");
@@ -79,7 +84,9 @@ fn what_makes_no_sense_is_refused_and_changes_nothing() {
         assert_eq!(format!("{:?}", scene.lights), before);
         error.to_string()
     };
-    let cases: [(Change, &str); 10] = [
+    let cases: [(Change, &str); 12] = [
+        (|v| v.surroundings.as_mut().unwrap().sky.as_mut().unwrap().nadir[1] = -1.0, "colour"),
+        (|v| v.surroundings.as_mut().unwrap().ground.as_mut().unwrap().radius = f64::INFINITY, "ground"),
         (|v| v.casts.push(true), "instances"),
         (|v| v.camera.world_from_view.matrix3.x_axis *= 2.0, "rotation"),
         (|v| v.camera.world_from_view.matrix3.x_axis *= -1.0, "rotation"),
@@ -95,6 +102,17 @@ fn what_makes_no_sense_is_refused_and_changes_nothing() {
         let reason = reason(change);
         assert!(reason.contains(word), "'{word}' is not in '{reason}'");
     }
+}
+
+#[test]
+fn a_file_without_surroundings_leaves_them_as_they_are() {
+    let (_, saved) = view();
+    let old = SavedView { surroundings: None, ..saved };
+    let text = old.to_json();
+    assert!(!text.contains("surroundings"));
+    let mut loaded = scene();
+    SavedView::from_json(&text).and_then(|view| view.apply(&mut loaded)).expect("it fits");
+    assert_eq!(Surroundings::of(&loaded), Surroundings::of(&scene()));
 }
 
 #[test]

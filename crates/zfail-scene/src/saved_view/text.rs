@@ -1,9 +1,9 @@
 //! A saved view as JSON. What JSON has no number for is `null`: a range without end.
 
-use super::{SavedView, SavedViewError};
+use super::{SavedView, SavedViewError, Surroundings};
 use glam::{DAffine3, DMat3, DVec3};
 use serde::{Deserialize, Serialize};
-use zfail_plan::scene::{Camera, Light, LightKind, LightShape};
+use zfail_plan::scene::{Camera, Ground, Light, LightKind, LightShape, Sky};
 use zfail_plan::view::Projection;
 
 /// The format's number, under which the file says what it is.
@@ -15,7 +15,27 @@ struct File {
     zfail_view: u32,
     camera: CameraText,
     lights: Vec<LightText>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    surroundings: Option<SurroundingsText>,
     casts: Vec<bool>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SurroundingsText {
+    ambient: [f32; 3],
+    background: [f32; 3],
+    /// Zenith, horizon and nadir.
+    sky: Option<[[f32; 3]; 3]>,
+    ground: Option<GroundText>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct GroundText {
+    height: f64,
+    center: [f64; 2],
+    radius: f64,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -68,6 +88,7 @@ impl SavedView {
             zfail_view: VERSION,
             camera: CameraText::from(&self.camera),
             lights: self.lights.iter().map(LightText::from).collect(),
+            surroundings: self.surroundings.as_ref().map(SurroundingsText::from),
             casts: self.casts.clone(),
         };
         // Maps with keys of text and finite numbers always have a text; infinities become null.
@@ -87,8 +108,25 @@ impl SavedView {
         Ok(Self {
             camera: file.camera.into(),
             lights: file.lights.into_iter().map(Light::from).collect(),
+            surroundings: file.surroundings.map(Surroundings::from),
             casts: file.casts,
         })
+    }
+}
+
+impl From<&Surroundings> for SurroundingsText {
+    fn from(surroundings: &Surroundings) -> Self {
+        let Surroundings { ambient, background, sky, ground } = *surroundings;
+        let ground = ground.map(|Ground { height, center, radius }| GroundText { height, center, radius });
+        Self { ambient, background, sky: sky.map(|Sky { zenith, horizon, nadir }| [zenith, horizon, nadir]), ground }
+    }
+}
+
+impl From<SurroundingsText> for Surroundings {
+    fn from(text: SurroundingsText) -> Self {
+        let SurroundingsText { ambient, background, sky, ground } = text;
+        let ground = ground.map(|GroundText { height, center, radius }| Ground { height, center, radius });
+        Self { ambient, background, sky: sky.map(|[zenith, horizon, nadir]| Sky { zenith, horizon, nadir }), ground }
     }
 }
 

@@ -142,6 +142,9 @@ fn sampler() -> Scene {
         mask_casting: MaskCasting::default(),
         ambient: [0.1, 0.2, 0.3],
         background: [0.3, 0.2, 0.1],
+        sky: None,
+        ground: None,
+        exposure: None,
         notices: vec![],
         ..Scene::default()
     }

@@ -6,6 +6,7 @@ use crate::session::Session;
 use egui::{DragValue, Slider, Ui};
 use zfail_plan::glam::DVec3;
 use zfail_plan::scene::LightKind;
+use zfail_scene::Sun;
 
 /// All lights.
 pub fn lights(ui: &mut Ui, desk: &mut Desk, session: &mut Session, actions: &mut Vec<Action>) {
@@ -84,7 +85,10 @@ fn details(ui: &mut Ui, session: &mut Session, i: usize) {
                 ui.label("cone");
             });
         }
-        LightKind::Directional { direction } => unit_vector(ui, direction),
+        LightKind::Directional { direction } => {
+            unit_vector(ui, direction);
+            sun(ui, direction);
+        }
     }
     session.move_light(i, kind);
 }
@@ -104,6 +108,21 @@ fn unit_vector(ui: &mut Ui, direction: &mut DVec3) {
     if edited != *direction {
         *direction = edited.try_normalize().unwrap_or(*direction);
     }
+}
+
+/// The direction as a place in the sky.
+fn sun(ui: &mut Ui, direction: &mut DVec3) {
+    let mut sun = Sun::shining(*direction);
+    ui.horizontal(|ui| {
+        let mut drag = |angle: &mut f64, range| {
+            ui.add(DragValue::new(angle).range(range).speed(0.5).suffix("°").max_decimals(1)).changed()
+        };
+        let moved = [drag(&mut sun.azimuth, -360.0..=720.0), drag(&mut sun.elevation, -90.0..=90.0)];
+        ui.label("azimuth, elevation").on_hover_text("Clockwise from north, which is -z, and above the horizon");
+        if moved.contains(&true) {
+            *direction = sun.direction();
+        }
+    });
 }
 
 fn angle(ui: &mut Ui, radians: &mut f64, range: std::ops::RangeInclusive<f64>) {

@@ -102,6 +102,25 @@ pub fn animation(ui: &mut Ui, session: &mut Session, actions: &mut Vec<Action>) 
     }
 }
 
+/// Sky and ground.
+pub fn surroundings(ui: &mut Ui, session: &mut Session) {
+    let (mut sky, mut ground) = (session.scene.sky.is_some(), session.scene.ground.is_some());
+    ui.horizontal(|ui| {
+        if ui.checkbox(&mut sky, "Sky").on_hover_text("Light and reflections from all sides").changed() {
+            session.set_sky(sky);
+        }
+        if ui.checkbox(&mut ground, "Ground").on_hover_text("Catches shadows and is otherwise not there").changed() {
+            session.set_ground(ground);
+        }
+        if let Some(mut height) = session.scene.ground.map(|ground| ground.height) {
+            let speed = 0.005 * crate::camera::radius(session.bounds());
+            if ui.add(DragValue::new(&mut height).speed(speed).max_decimals(4).suffix(" m")).changed() {
+                session.move_ground(height);
+            }
+        }
+    });
+}
+
 /// Settings of the renderer.
 pub fn picture(ui: &mut Ui, stage: &mut Stage<'_>, actions: &mut Vec<Action>) {
     let before = stage.session.look.settings.clone();

@@ -91,6 +91,7 @@ pub fn show(
                 section(ui, "Animation", true, |ui| look::animation(ui, &mut stage.session, actions));
             }
             section(ui, "Lights", true, |ui| lights::lights(ui, desk, &mut stage.session, actions));
+            section(ui, "Surroundings", true, |ui| look::surroundings(ui, &mut stage.session));
             section(ui, "Picture", true, |ui| look::picture(ui, stage, actions));
             section(ui, "Overlays", false, |ui| look::overlays(ui, &mut stage.session));
             section(ui, "Casters", false, |ui| scene::casters(ui, &mut desk.filter, &mut stage.session));

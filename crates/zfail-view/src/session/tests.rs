@@ -48,6 +48,47 @@ fn a_light_moved_by_hand_stays_there() {
 }
 
 #[test]
+fn surroundings_are_switched_and_come_back() {
+    let mut session = session();
+    let ambient = session.scene.ambient;
+    assert!(session.scene.sky.is_none() && session.scene.ground.is_none(), "a built-in scene has none");
+    session.set_sky(true);
+    session.set_ground(true);
+    assert!(session.changes.surroundings && session.changes.picture);
+    assert!(session.scene.sky.is_some() && session.scene.ambient == [0.0; 3]);
+    assert!(session.scene.ground.is_some_and(|ground| ground.height <= session.bounds().min.y + 1e-9));
+    session.move_ground(-7.0);
+    session.set_ground(false);
+    session.set_ground(true);
+    assert_eq!(session.scene.ground.map(|ground| ground.height), Some(-7.0));
+    session.move_ground(f64::NAN);
+    assert_eq!(session.scene.ground.map(|ground| ground.height), Some(-7.0));
+    session.set_sky(false);
+    assert_eq!((session.scene.sky, session.scene.ambient), (None, ambient));
+}
+
+#[test]
+fn a_camera_that_was_made_for_the_scene_follows_the_window() {
+    let mut bare = builtin::animated("room").expect("it is built in");
+    bare.scene.cameras.clear();
+    zfail_scene::Setting::default().complete(&mut bare);
+    let mut session = Session::new("room.glb".to_owned(), bare, Look::default());
+    let place = |session: &Session| session.rig.camera.world_from_view.translation;
+    session.fit(1.6);
+    let wide = place(&session);
+    session.fit(0.5);
+    assert_ne!(place(&session), wide);
+    session.fit(1.6);
+    assert_eq!(place(&session), wide);
+    session.posed();
+    assert_eq!(place(&session), wide, "a pose leaves it where it is");
+    session.rig.turn([0.1, 0.0]);
+    let turned = place(&session);
+    session.fit(0.7);
+    assert_eq!(place(&session), turned, "a camera that was moved by hand stays");
+}
+
+#[test]
 fn lights_come_and_go() {
     let mut session = session();
     let before = session.scene.lights.len();

@@ -1,0 +1,79 @@
+//! Outputs that are measured instead of looked at.
+
+use super::exposed::Exposed;
+use super::{Renderer, no_targets};
+use crate::attribute_pass::AttributePass;
+use crate::mask_pass::{Mask, MaskPass};
+use crate::shadow_pass::ShadowPass;
+use crate::targets::Attributes;
+use crate::{AovKind, Aovs, RenderError, Settings, attribute_outputs};
+use zfail::Counting;
+use zfail_plan::view::View;
+
+/// What measured outputs need.
+#[derive(Debug)]
+pub struct Measured {
+    pub attributes: AttributePass,
+    pub shadow: ShadowPass,
+    pub mask: MaskPass,
+    pub targets: Attributes,
+}
+
+impl Renderer<'_> {
+    /// Renders the outputs of `kinds`, always at one sample per pixel.
+    ///
+    /// # Errors
+    /// As for [`Renderer::picture`].
+    pub fn aovs(&mut self, view: &View, settings: &Settings, kinds: &[AovKind]) -> Result<Aovs, RenderError> {
+        let gpu = self.gpu;
+        let chosen = self.scene.chosen(settings)?;
+        if self.measured.as_ref().is_none_or(|m| m.targets.size != view.size) {
+            self.measured = None;
+            self.measured = Some(Measured {
+                attributes: AttributePass::default(),
+                shadow: ShadowPass::new(gpu, &self.scene.shadows),
+                mask: MaskPass::new(gpu, &self.layouts),
+                targets: Attributes::new(gpu, &self.layouts, view.size)?,
+            });
+            gpu.check()?;
+        }
+        let Some(Measured { attributes, shadow, mask, targets }) = &mut self.measured else {
+            return Err(no_targets());
+        };
+        self.scene.arrange(gpu, view);
+        let exposed = Exposed::new(&self.scene, &chosen, settings.exposure, view);
+        let placements = self.scene.draws.order.iter().map(|&i| &self.scene.instances[i].world_from_object);
+        self.frame.update(gpu, &self.layouts, view, &exposed.shading(), placements, |_, _| true)?;
+        let encoder = || gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+
+        let mut first = encoder();
+        attributes.encode(gpu, &self.layouts, &mut first, targets, &self.frame, &self.scene);
+        gpu.queue.submit([first.finish()]);
+        let mut out = Aovs { size: view.size, ..Aovs::default() };
+        attribute_outputs::fill(&mut out, gpu, targets, view, kinds)?;
+
+        for (kind, counting, what, images) in [
+            (AovKind::Shadow, Counting::Verdict, Mask::Reached, &mut out.shadow),
+            (AovKind::Stencil, Counting::Raw, Mask::Count, &mut out.stencil),
+        ] {
+            if !kinds.contains(&kind) {
+                continue;
+            }
+            if settings.shadows {
+                let lights: Vec<_> = chosen.iter().map(|&l| (l, self.scene.lights[l].kind)).collect();
+                self.scene.plan(gpu, view, &lights, settings, counting, None)?;
+                if targets.stored_depth.is_some() {
+                    self.scene.plan_tiles(gpu, settings)?;
+                }
+            }
+            for light in 0..chosen.len() {
+                let mut encoder = encoder();
+                if settings.shadows {
+                    shadow.encode(&mut encoder, targets, &self.scene.shadows, light, &gpu.device);
+                }
+                images.push(mask.read(gpu, encoder, targets, &self.frame, light as u32, what)?);
+            }
+        }
+        Ok(out)
+    }
+}
