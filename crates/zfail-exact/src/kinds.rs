@@ -7,6 +7,7 @@ use crate::{
     recipe::{CastsFor, Part, Recipe, Surface, look},
     shapes::Shape,
 };
+use std::f64::consts::PI;
 use zfail_plan::{
     glam::{DAffine3, DMat3, DQuat, DVec3},
     scene::LightKind,
@@ -48,11 +49,17 @@ pub enum Kind {
     Stack,
     /// Blended parts, parts that cast for some lights or none.
     Mixed,
+    /// Many small separate triangles, half of them turned away from the light.
+    Shards,
+    /// Triangles whose edges lie on and end on surfaces, most of them turned away from the light.
+    Planted,
+    /// The near plane of an orthographic view cuts casters.
+    OrthographicCut,
 }
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 19] = [
         Self::Closed,
         Self::Open,
         Self::Soup,
@@ -69,6 +76,9 @@ impl Kind {
         Self::Grid,
         Self::Stack,
         Self::Mixed,
+        Self::Shards,
+        Self::Planted,
+        Self::OrthographicCut,
     ];
 
     /// The scene of this kind that `seed` makes.
@@ -167,6 +177,35 @@ impl Kind {
                     part.casting = random.pick(&[CastsFor::All, CastsFor::AllButFirst, CastsFor::None]);
                 }
             }
+            Self::OrthographicCut => {
+                scatter(recipe, random, &any);
+                let seed = u64::from(random.below(1 << 20));
+                scatter(recipe, random, &[Shape::Planted(60, seed), Shape::Lattice(3), Shape::Torus(12)]);
+                let ymag = random.between(1.5, 3.0);
+                let caster = recipe.parts[1 + random.below(recipe.parts.len() as u32 - 1) as usize].pose.translation;
+                let eye = recipe.view.world_from_view;
+                let near = eye.matrix3.z_axis.dot(eye.translation - caster) + random.between(-0.4, 0.4);
+                recipe.view.projection = Projection::Orthographic { ymag, near, far: near + 30.0 };
+                if random.once_in(2) {
+                    let direction = (random.in_cube(1.0) - DVec3::Y).normalize();
+                    recipe.lights[1] = LightKind::Directional { direction };
+                }
+                // From below, the floor shadows everything.
+                let position = DVec3::new(random.between(-2.0, 2.0), -1.0, random.between(-2.0, 2.0));
+                recipe.lights[0] = LightKind::Point { position, range: f64::INFINITY };
+            }
+            Self::Shards => {
+                let seed = |random: &mut Random| u64::from(random.below(1 << 20));
+                let count = random.between(40.0, 300.0) as u32;
+                let shapes = [Shape::Shards(count, seed(random)), Shape::Shards(count, seed(random))];
+                small_parts(recipe, random, shapes);
+            }
+            Self::Planted => {
+                let seed = |random: &mut Random| u64::from(random.below(1 << 20));
+                let count = random.between(20.0, 120.0) as u32;
+                let shapes = [Shape::Planted(count, seed(random)), Shape::Planted(count, seed(random))];
+                small_parts(recipe, random, shapes);
+            }
         }
     }
 }
@@ -231,6 +270,38 @@ fn spot(random: &mut Random) -> LightKind {
     let outer = random.between(0.3, 0.9);
     let direction = (random.in_cube(1.0) + DVec3::Y * 0.5 - position).normalize();
     LightKind::Spot { position, direction, range: random.between(5.0, 20.0), inner: 0.5 * outer, outer }
+}
+
+/// Fills the picture with two parts of many small triangles, under lights that mostly come from beyond them. Every second
+/// view is orthographic.
+fn small_parts(recipe: &mut Recipe, random: &mut Random, shapes: [Shape; 2]) {
+    let eye = recipe.view.world_from_view.translation;
+    let centre = DVec3::Y * 1.2;
+    for shape in shapes {
+        let (at, size) = (centre + random.in_cube(0.5), random.between(0.7, 1.3));
+        let part = Part::new(shape, place(random, at, size));
+        recipe.parts.push(if random.once_in(4) { part } else { part.double() });
+    }
+    let towards = (centre - eye).normalize();
+    let beyond = |random: &mut Random| centre + towards * random.between(0.5, 4.0) + random.in_cube(1.5);
+    let direction = (-towards + random.in_cube(0.9)).normalize();
+    let range = f64::INFINITY;
+    recipe.lights = vec![LightKind::Point { position: beyond(random), range }, LightKind::Directional { direction }];
+    if random.once_in(2) {
+        // All of it in the shadow of one sheet.
+        let LightKind::Point { position, .. } = recipe.lights[0] else { return };
+        let pose = DAffine3 { translation: position, ..look(position, centre) };
+        let turned = pose * DAffine3::from_translation(DVec3::NEG_Z * 0.05) * DAffine3::from_rotation_x(0.5 * PI);
+        recipe.parts.push(Part::new(Shape::Sheet(1), turned * DAffine3::from_scale(DVec3::splat(0.5))));
+    }
+    recipe.view.world_from_view = look(eye, centre);
+    let distance = eye.distance(centre);
+    recipe.view.projection = if random.once_in(2) {
+        Projection::Orthographic { ymag: random.between(1.0, 1.8), near: 0.1, far: 30.0 }
+    } else {
+        let yfov = 2.0 * (random.between(1.0, 1.8) / distance).atan();
+        Projection::Perspective { yfov, near: 10f64.powf(random.between(-2.0, -0.7)), far: None }
+    };
 }
 
 /// Moves the eye into the shadow of a caster or into nested solids.

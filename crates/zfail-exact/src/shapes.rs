@@ -44,6 +44,10 @@ pub enum Shape {
     Tangle(u32, u64),
     /// So many separate triangles at random.
     Soup(u32, u64),
+    /// So many small separate triangles at random.
+    Shards(u32, u64),
+    /// A closed sphere on which so many triangles stand: an edge of each lies on one of its faces, within rounding.
+    Planted(u32, u64),
     /// A sphere with every third triangle removed or reversed.
     Wreck(u32),
     /// A square upon itself, so many times, the windings alternating.
@@ -101,7 +105,9 @@ impl Shape {
                 build.cuboid(DVec3::new(0.5, 0.5, -0.5), DVec3::splat(0.5));
             }
             Self::Tangle(count, seed) => build.tangle(count, seed),
-            Self::Soup(count, seed) => build.soup(count, seed),
+            Self::Soup(count, seed) => build.soup(count, seed, 0.5),
+            Self::Shards(count, seed) => build.soup(count, seed, 0.12),
+            Self::Planted(count, seed) => build.planted(count, seed),
             Self::Wreck(n) => {
                 build.sphere(n, n);
                 let mut i = 0;
@@ -253,14 +259,33 @@ impl Builder {
         }
     }
 
-    fn soup(&mut self, count: u32, seed: u64) {
+    /// Each triangle has corners within `half` of its centre along every axis.
+    fn soup(&mut self, count: u32, seed: u64, half: f64) {
         let mut random = Random::new(seed);
         for _ in 0..count {
             let center = random.in_cube(0.7);
             let corners = [0, 1, 2].map(|_| {
-                let p = center + random.in_cube(0.5);
+                let p = center + random.in_cube(half);
                 self.vertex(p)
             });
+            self.triangles.push(corners);
+        }
+    }
+
+    fn planted(&mut self, count: u32, seed: u64) {
+        let mut random = Random::new(seed);
+        self.sphere(8, 8);
+        let ground = self.triangles.clone();
+        for _ in 0..count {
+            let face = random.pick(&ground).map(|v| self.positions[v as usize]);
+            let on_face = |random: &mut Random| {
+                let (u, v) = (random.between(0.0, 1.0), random.between(0.0, 1.0));
+                let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+                face[0] + (face[1] - face[0]) * u + (face[2] - face[0]) * v
+            };
+            let foot = [on_face(&mut random), on_face(&mut random)];
+            let top = (foot[0] + foot[1]) * 0.5 + (face[0] + random.in_cube(0.5)) * random.between(0.05, 0.4);
+            let corners = [foot[0], foot[1], top].map(|p| self.vertex(p));
             self.triangles.push(corners);
         }
     }

@@ -56,7 +56,7 @@ fn no_pixel_is_wrong() {
     assert!(failures.is_empty(), "{failures}");
     if only.is_empty() {
         assert!(
-            masks.rejected * 10 < masks.images && counts.rejected * 5 < counts.images,
+            masks.rejected * 6 < masks.images && counts.rejected * 5 < counts.images,
             "too many scenes are too fine"
         );
         assert!(masks.lit.min(masks.shadowed) * 20 > masks.checked, "too little is lit or shadowed");

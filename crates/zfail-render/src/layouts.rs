@@ -10,6 +10,8 @@ pub struct Layouts {
     pub frame: wgpu::BindGroupLayout,
     pub material: wgpu::BindGroupLayout,
     pub attributes: wgpu::BindGroupLayout,
+    /// The number of a light.
+    pub chosen: wgpu::BindGroupLayout,
     verdicts: [wgpu::BindGroupLayout; 2],
 }
 
@@ -37,6 +39,7 @@ impl Layouts {
             ),
             material: create("material", &material),
             attributes: create("attributes", &[entry(0, fragment, texture(BYTES, false))]),
+            chosen: create("chosen light", &[entry(0, fragment, uniform::<u32>())]),
             verdicts: [false, true].map(|multi| create("verdicts", &[entry(0, fragment, texture(FLOATS, multi))])),
         }
     }

@@ -27,6 +27,7 @@ mod lights;
 mod mask_pass;
 mod materials;
 mod mip_maps;
+mod own_shadow;
 mod picture;
 mod pipeline;
 mod read_back;

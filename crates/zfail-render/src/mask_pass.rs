@@ -2,7 +2,9 @@
 
 use crate::frame::FrameData;
 use crate::layouts::Layouts;
+use crate::own_shadow::OwnShadow;
 use crate::pipeline::{ADD, Recipe, cleared, read_only};
+use crate::scene::SceneOnGpu;
 use crate::targets::{Attributes, view};
 use crate::{Gpu, RenderError, read_back, shader};
 
@@ -14,6 +16,7 @@ pub struct MaskPass {
     reached: wgpu::RenderPipeline,
     /// One per bit. Not every backend copies stencil buffers, but all test them.
     bits: [wgpu::RenderPipeline; 8],
+    own_shadow: OwnShadow,
 }
 
 /// What the image shows.
@@ -46,10 +49,13 @@ impl MaskPass {
             let state = wgpu::DepthStencilState { stencil, ..lit(gpu) };
             create("counted", &[("BIT", f64::from(1 << bit))], state, Some(ADD))
         });
-        Self { reached: create("reached", &[], lit(gpu), None), bits }
+        let own_shadow = OwnShadow::new(gpu, layouts, FORMAT);
+        Self { reached: create("reached", &[], lit(gpu), None), bits, own_shadow }
     }
 
-    /// Renders and reads the image of light `light` of the frame, one byte per pixel.
+    /// Renders and reads the image of light `light` of the frame, one byte per pixel. `casting` is the scene, and which of its
+    /// lights that is, if it has shadows.
+    #[expect(clippy::too_many_arguments, reason = "the state of a pass")]
     pub fn read(
         &self,
         gpu: &Gpu,
@@ -58,6 +64,7 @@ impl MaskPass {
         frame: &FrameData,
         light: u32,
         mask: Mask,
+        casting: Option<(&SceneOnGpu, usize)>,
     ) -> Result<Vec<u8>, RenderError> {
         let image = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("mask"),
@@ -86,6 +93,9 @@ impl MaskPass {
         for pipeline in pipelines {
             pass.set_pipeline(pipeline);
             pass.draw(0..3, light..light + 1);
+        }
+        if let Some((scene, of_scene)) = casting.filter(|_| mask == Mask::Reached) {
+            self.own_shadow.draw(gpu, &mut pass, frame, scene, light, of_scene);
         }
         drop(pass);
         gpu.queue.submit([encoder.finish()]);

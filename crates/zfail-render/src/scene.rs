@@ -164,6 +164,11 @@ impl SceneOnGpu {
         Ok(())
     }
 
+    /// Whether instance `instance` blocks light number `light`.
+    pub fn casts(&self, instance: usize, light: usize) -> bool {
+        self.caster_of[instance].is_some() && !self.lights[light].excluded.contains(&instance)
+    }
+
     fn check_instances(&self, scene: &Scene) -> Result<(), RenderError> {
         let same = self.instances.len() == scene.instances.len()
             && self.meshes.len() == scene.meshes.len()

@@ -64,6 +64,7 @@ const GROUND: [Program; 2] = [ground!("ground_single"), ground!("ground_multi")]
 pub const VERDICT: Program = program!("verdict", "screen", "verdict");
 pub const DESCRIBE: Program =
     program!("describe", "limits", "frame", "octahedral", "vertex_mapped", "material", "describe");
+pub const OWN_SHADOW: Program = program!("own shadow", "frame", "vertex_plain", "own_shadow");
 pub const MASK: Program = program!("mask", "limits", "frame", "shape", "reach", "attributes", "screen", "mask");
 const FORWARD: [[Program; 3]; 3] = [forward!("vertex_plain"), forward!("vertex_textured"), forward!("vertex_mapped")];
 const METER: [Program; 2] = [program!("meter", "hdr_single", "meter"), program!("meter 4x", "hdr_multi", "meter")];
@@ -115,7 +116,7 @@ mod tests {
     use naga::valid::{Capabilities, ValidationFlags, Validator};
 
     fn programs() -> Vec<Program> {
-        [&[DEPTH, CUTOUT, OPEN_SKY, VERDICT, DESCRIBE, MASK][..], FORWARD.as_flattened(), &GROUND, &METER, &DEVELOP]
+        [&[DEPTH, CUTOUT, OPEN_SKY, VERDICT, DESCRIBE, MASK, OWN_SHADOW][..], FORWARD.as_flattened(), &GROUND, &METER, &DEVELOP]
             .concat()
     }
 

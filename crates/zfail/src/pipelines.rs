@@ -7,6 +7,8 @@
 //! front face decrements and a back face increments, wrapping, so that their order does not matter. Front and back are
 //! told apart in one draw (E&K 2002, section 4.1, "two-sided stencil testing"). z-pass (Heidmann 1991) does the opposite
 //! where a face lies in front of the visible surface. Both test depth strictly: what coincides with the surface is behind.
+//! Only clamped depths are in front where they are equal: what lies before the near plane is clamped to 1, and a surface that
+//! the near plane cuts can have that very depth.
 
 use crate::tiles::VerdictPipeline;
 use wgpu::{
@@ -89,13 +91,9 @@ impl Pipelines {
     fn made_by(maker: &Maker<'_>) -> Self {
         let Maker { device, target, .. } = maker;
         Self {
-            z_pass: maker.set("volume", None, false, true),
-            plain: maker.set("volume", None, false, false),
-            clamped: if device.features().contains(Features::DEPTH_CLIP_CONTROL) {
-                maker.set("volume", None, true, false)
-            } else {
-                maker.set("clamped_volume", Some("clamped_depth"), false, false)
-            },
+            z_pass: maker.set("volume", None, false, true, CompareFunction::Greater),
+            plain: maker.set("volume", None, false, false, CompareFunction::Greater),
+            clamped: maker.clamped(),
             start: maker.start(),
             fold: maker.fold(),
             tiles: VerdictPipeline::new(device, target),
@@ -131,7 +129,23 @@ struct Maker<'a> {
 }
 
 impl Maker<'_> {
-    fn set(&self, vertex: &str, fragment: Option<&str>, unclipped_depth: bool, z_pass: bool) -> Set {
+    fn clamped(&self) -> Set {
+        let compare = CompareFunction::GreaterEqual;
+        if self.device.features().contains(Features::DEPTH_CLIP_CONTROL) {
+            self.set("volume", None, true, false, compare)
+        } else {
+            self.set("clamped_volume", Some("clamped_depth"), false, false, compare)
+        }
+    }
+
+    fn set(
+        &self,
+        vertex: &str,
+        fragment: Option<&str>,
+        unclipped_depth: bool,
+        z_pass: bool,
+        compare: CompareFunction,
+    ) -> Set {
         let (up, down) = (StencilOperation::IncrementWrap, StencilOperation::DecrementWrap);
         let (front, back) = if z_pass { (in_front(up), in_front(down)) } else { (behind(down), behind(up)) };
         [false, true].map(|batched| {
@@ -143,7 +157,7 @@ impl Maker<'_> {
                     let (all, none) = (CompareFunction::Always, StencilState::default());
                     return self.pipeline(vertex, Some("one"), primitive, all, none);
                 }
-                self.pipeline(vertex, fragment, primitive, CompareFunction::Greater, stencil)
+                self.pipeline(vertex, fragment, primitive, compare, stencil)
             })
         })
     }

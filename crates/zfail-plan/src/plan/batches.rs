@@ -5,6 +5,7 @@
 use super::meridians::{self, Crossings, Lines};
 use super::pair::{Pair, Role};
 use super::placed::Placed;
+use super::sheets::sheets;
 use super::{Counting, Frame};
 use crate::scene::{Bounds, LightKind};
 use crate::stack::{self, Cone};
@@ -32,6 +33,9 @@ pub(super) struct Batching {
 struct Item {
     pair: usize,
     triangle: usize,
+    /// With which others it hangs together.
+    sheet: u32,
+    /// Of the sheet's nearest triangle.
     distance: f64,
 }
 
@@ -190,7 +194,7 @@ fn spread(pairs: &mut [Pair], items: &[Item], cones: &[Cone], shape: &stack::Fra
     }
 }
 
-/// All casting triangles of one light as cones, nearest caster first, nearest triangle first.
+/// All casting triangles of one light as cones, nearest caster first, nearest sheet first.
 fn cones(
     frame: &Frame<'_>,
     kind: &LightKind,
@@ -202,13 +206,21 @@ fn cones(
     let shape = directions(light, active().map(|(_, (_, caster))| caster));
     let mut items = Vec::new();
     for (p, (pair, caster)) in active() {
+        let sheets = sheets(frame.casters[p].topology, &pair.weights);
+        let first = items.len();
         for triangle in (0..pair.weights.len()).filter(|&t| pair.weights[t] != 0) {
             let corners = frame.casters[p].topology.corners(triangle);
             let center = caster.world_from_object.transform_point3((corners[0] + corners[1] + corners[2]) / 3.0);
             let distance =
                 if light.w == 0.0 { -light.truncate().dot(center) } else { light.truncate().distance(center) };
-            items.push(Item { pair: p, triangle, distance });
+            items.push(Item { pair: p, triangle, sheet: sheets[triangle], distance });
         }
+        let mut of_sheet = vec![f64::INFINITY; sheets.len()];
+        for item in &items[first..] {
+            let nearest = &mut of_sheet[item.sheet as usize];
+            *nearest = nearest.min(item.distance);
+        }
+        items[first..].iter_mut().for_each(|item| item.distance = of_sheet[item.sheet as usize]);
     }
     let mut nearest = vec![f64::INFINITY; pairs.len()];
     for item in &items {
@@ -216,7 +228,7 @@ fn cones(
     }
     items.sort_by(|a, b| {
         let pairs = nearest[a.pair].total_cmp(&nearest[b.pair]).then(a.pair.cmp(&b.pair));
-        pairs.then(a.distance.total_cmp(&b.distance))
+        pairs.then(a.distance.total_cmp(&b.distance)).then(a.sheet.cmp(&b.sheet))
     });
     let cones = items
         .iter()
@@ -229,7 +241,8 @@ fn cones(
     (items, cones, shape)
 }
 
-/// Halves the sequence of items until no ray crosses more than [`FOLDED`] of any run, between casters where possible.
+/// Halves the sequence of items until no ray crosses more than [`FOLDED`] of any run, between casters where possible, or else
+/// between sheets.
 fn halve(items: &[Item], cones: &[Cone], shape: &stack::Frame, out: &mut Vec<std::ops::Range<usize>>) {
     let mut rest = Vec::new();
     let mut next = Some(0..items.len());
@@ -239,21 +252,21 @@ fn halve(items: &[Item], cones: &[Cone], shape: &stack::Frame, out: &mut Vec<std
             continue;
         }
         let middle = usize::midpoint(range.start, range.end);
-        let border = |&i: &usize| items[i - 1].pair != items[i].pair;
-        let before = (range.start + 1..=middle).rev().find(border);
-        let after = (middle..range.end).find(border).filter(|&i| i > range.start);
-        let cut = match (before, after) {
-            (Some(b), Some(a)) => {
-                if middle - b <= a - middle {
-                    b
-                } else {
-                    a
-                }
-            }
-            (Some(i), None) | (None, Some(i)) => i,
-            (None, None) => middle,
-        };
+        let casters = |i: usize| items[i - 1].pair != items[i].pair;
+        let sheets = |i: usize| casters(i) || items[i - 1].sheet != items[i].sheet;
+        let cut = nearest(&range, middle, casters).or_else(|| nearest(&range, middle, sheets)).unwrap_or(middle);
         rest.push(cut..range.end);
         next = Some(range.start..cut);
+    }
+}
+
+/// The border within `range` that is nearest to its middle.
+fn nearest(range: &std::ops::Range<usize>, middle: usize, border: impl Fn(usize) -> bool) -> Option<usize> {
+    let before = (range.start + 1..=middle).rev().find(|&i| border(i));
+    let after = (middle..range.end).find(|&i| i > range.start && border(i));
+    match (before, after) {
+        (Some(b), Some(a)) if middle - b <= a - middle => Some(b),
+        (_, Some(i)) | (Some(i), None) => Some(i),
+        (None, None) => None,
     }
 }

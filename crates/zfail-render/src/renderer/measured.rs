@@ -66,12 +66,13 @@ impl Renderer<'_> {
                     self.scene.plan_tiles(gpu, settings)?;
                 }
             }
-            for light in 0..chosen.len() {
+            for (light, &of_scene) in chosen.iter().enumerate() {
                 let mut encoder = encoder();
                 if settings.shadows {
                     shadow.encode(&mut encoder, targets, &self.scene.shadows, light, &gpu.device);
                 }
-                images.push(mask.read(gpu, encoder, targets, &self.frame, light as u32, what)?);
+                let casting = settings.shadows.then_some((&self.scene, of_scene));
+                images.push(mask.read(gpu, encoder, targets, &self.frame, light as u32, what, casting)?);
             }
         }
         Ok(out)

@@ -1,10 +1,13 @@
-//! Random scenes that were once wrong, each with what was the matter.
+//! Scenes that were once wrong, each with what was the matter.
 
-use zfail_exact::{bench, kinds::Kind};
-use zfail_render::{Gpu, GpuOptions, Settings};
+mod pair;
+
+use zfail_exact::bench;
+use zfail_exact::kinds::Kind;
+use zfail_render::{Gpu, GpuOptions, Settings, Technique};
 
 /// Kind, seed, size and story.
-const SCENES: [(Kind, u64, [u32; 2], &str); 7] = [
+const SCENES: [(Kind, u64, [u32; 2], &str); 8] = [
     (Kind::Soup, 1, [192, 120], "a culled twin's light cap lay before the visible triangle by rounding"),
     (Kind::Soup, 1003, [256, 160], "the same"),
     (Kind::NonManifold, 1073, [256, 160], "the same, in a sheet with a back"),
@@ -16,6 +19,12 @@ const SCENES: [(Kind, u64, [u32; 2], &str); 7] = [
         "counting from within a solid, its culled back faces were taken to hide its light cap",
     ),
     (Kind::EyeInside, 8, [256, 160], "the same"),
+    (
+        Kind::OrthographicCut,
+        14,
+        [321, 197],
+        "what the near plane cuts ended on the rasteriser's grid, with the clamped depth of all that lies before that plane",
+    ),
     (
         Kind::Orthographic,
         910_012,
@@ -34,5 +43,17 @@ fn what_was_wrong_once_is_right() {
             let wrong = (comparison.mask.wrong.len(), comparison.count.wrong.len());
             assert_eq!(wrong, (0, 0), "{kind:?} seed {seed}, light {}: {story}", comparison.light);
         }
+    }
+}
+
+/// A batch ended along the diagonal of a sheet, and its side there stood within rounding of the sheet itself.
+#[test]
+fn batches_of_a_deep_stack_end_between_sheets() {
+    let gpu = Gpu::new(&GpuOptions::default()).expect("a graphics adapter");
+    // The tile pass had it right.
+    let settings = Settings { technique: Technique::EverittKilgard, ..Settings::default() };
+    let images = bench::images(&gpu, &Kind::Stack.recipe(910_017, [256, 160]), &settings);
+    for comparison in images.and_then(|i| i.compare()).expect("comparison") {
+        assert!(comparison.mask.wrong.is_empty(), "{:?}", comparison.mask.wrong);
     }
 }
