@@ -20,6 +20,7 @@ mod placed;
 mod pyramid;
 mod reach;
 mod receivers;
+mod spread;
 mod stages;
 mod stats;
 mod store;

@@ -11,6 +11,7 @@ use super::store::Place;
 use crate::casting::{self, Casting, ObjectLight};
 use crate::scene::LightKind;
 use crate::scissor::Rectangle;
+use crate::stack::{self, Outline};
 use crate::topology::{Cover, NONE, Part, Topology};
 use crate::view::{Projection, View};
 use crate::volume::{self, Volume};
@@ -173,9 +174,11 @@ impl Pair {
         if self.is_built() {
             return;
         }
-        let batches = self.batch_of.iter().copied().max().unwrap_or(0);
+        // Of a caster among many, few.
+        let weighted = self.batch_of.iter().zip(&self.weights).filter(|(_, weight)| **weight != 0).map(|(&b, _)| b);
+        let (first, last) = weighted.fold((u16::MAX, 0), |(lo, hi), batch| (lo.min(batch), hi.max(batch)));
         let mut used = 0;
-        for batch in 0..=batches {
+        for batch in first.min(last)..=last {
             self.mask(batch);
             if self.masked.iter().all(|&c| c == 0) {
                 continue;
@@ -350,12 +353,28 @@ impl Pair {
         lines: Lines,
         crossings: &mut Crossings,
     ) {
+        crossings.count(topology, &self.weights, self.silhouette(), world_from_object, self.light, lines);
+    }
+
+    /// Adds the silhouette of the whole.
+    pub fn outline(&self, topology: &Topology, caster: &Placed, outline: &mut Outline) {
+        let (weights, world_from_object) = (&self.weights, &caster.world_from_object);
+        let caster = stack::Caster { topology, weights, world_from_object, light: self.light };
+        outline.add(&caster, self.silhouette(), 0..weights.len());
+    }
+
+    /// Edges as often as they have sides, along the way of triangles with weight 1.
+    fn silhouette(&self) -> impl Iterator<Item = [u32; 2]> {
         let stride = volume::side_len(is_converging(self.light, self.finite));
-        let silhouette = self.pieces().iter().flat_map(|piece| {
+        self.pieces().iter().flat_map(move |piece| {
             let sides = &piece.indices[..piece.volume.sides.end as usize];
-            sides.chunks_exact(stride).map(|side| [side[0] >> 1, side[1] >> 1])
-        });
-        crossings.count(topology, &self.weights, silhouette, world_from_object, self.light, lines);
+            sides.chunks_exact(stride).map(|side| [side[1] >> 1, side[0] >> 1])
+        })
+    }
+
+    /// Whether everything is in one batch, and its sides are built.
+    pub fn is_united(&self) -> bool {
+        self.built && self.batch_of.is_empty()
     }
 
     /// One more than the last batch in which the pair draws anything.

@@ -1,0 +1,154 @@
+//! Many silhouettes that meet in one vertex: a cell that holds it never has few of them.
+//!
+//! In: the edges in a cell and a direction in it. Out: by how much the number of layers can grow on a straight way through the
+//! cell. About a vertex, edges are spokes, and a straight way turns about it by less than half a circle, to the left or to
+//! the right: the most that the steps of the spokes on either way add up to is exact, where their absolute sum is not.
+
+use super::cell::{Cell, NOISE};
+use super::outline::Edge;
+use glam::DVec3;
+use std::cmp::Reverse;
+use std::f64::consts::PI;
+use std::ops::Range;
+
+/// Spokes so short, as seen from the light, that their angle is off by more than this are edges like any other.
+const VAGUE: f64 = 1e-3;
+
+/// Memory for looking at vertices.
+#[derive(Debug, Default)]
+pub(super) struct Spokes {
+    /// Vertex, which of the members, and which of its ends the vertex is.
+    ends: Vec<(u32, u32, u8)>,
+    /// Ranges of `ends` about one vertex, the largest first.
+    stars: Vec<Range<usize>>,
+    /// Which members a star has.
+    taken: Vec<bool>,
+    steps: Vec<Step>,
+    order: Vec<(f64, i64)>,
+}
+
+/// Across a spoke.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    /// To the left of the reference.
+    angle: f64,
+    /// How far it may be off.
+    vague: f64,
+    /// What a way to the left gains.
+    gain: i64,
+}
+
+impl Spokes {
+    /// By how much the number of layers at most grows from `p` to anywhere in `cell`, which `members` of `edges` may meet.
+    pub fn rise(&mut self, cell: &Cell, p: DVec3, edges: &[Edge], members: &[u32]) -> i64 {
+        let edge = |k: u32| &edges[members[k as usize] as usize];
+        let Self { ends, stars, taken, steps, order } = self;
+        find(cell, (0..members.len() as u32).map(|k| (k, edge(k))), ends, stars);
+        taken.clear();
+        taken.resize(members.len(), false);
+        let mut sum = 0;
+        for star in stars.iter() {
+            steps.clear();
+            let mut alone = 0;
+            for &(_, k, end) in &ends[star.clone()] {
+                if let Some(step) = Step::of(edge(k), usize::from(end), p).filter(|_| !taken[k as usize]) {
+                    taken[k as usize] = true;
+                    alone += i64::from(edge(k).rise(p));
+                    steps.push(step);
+                }
+            }
+            sum += alone.min(most(steps, order));
+        }
+        let others = (0..members.len() as u32).filter(|&k| !taken[k as usize]);
+        sum + others.map(|k| i64::from(edge(k).rise(p))).sum::<i64>()
+    }
+}
+
+/// Groups edges about the vertices from which they leave `cell`, the largest group first.
+fn find<'e>(
+    cell: &Cell,
+    members: impl Iterator<Item = (u32, &'e Edge)>,
+    ends: &mut Vec<(u32, u32, u8)>,
+    stars: &mut Vec<Range<usize>>,
+) {
+    let planes = cell.planes();
+    // Beyond its far end a spoke would not be in the cell: it leaves that through a plane on the way there.
+    let leaves = |vertex: DVec3, far: DVec3| {
+        vertex.z > NOISE && planes.iter().any(|plane| plane.dot(vertex) > -NOISE && plane.dot(far) < -4.0 * NOISE)
+    };
+    ends.clear();
+    for (k, edge) in members {
+        let [a, b] = edge.ends;
+        ends.extend(leaves(a, b).then_some((edge.vertices[0], k, 0)));
+        ends.extend(leaves(b, a).then_some((edge.vertices[1], k, 1)));
+    }
+    ends.sort_unstable();
+    stars.clear();
+    let mut start = 0;
+    for star in ends.chunk_by(|a, b| a.0 == b.0) {
+        stars.extend((star.len() > 1).then_some(start..start + star.len()));
+        start += star.len();
+    }
+    stars.sort_unstable_by_key(|star| Reverse(star.len()));
+}
+
+impl Step {
+    /// Across the spoke that begins at `edge.ends[end]`, as seen from `p`; `None` if its angle is not known.
+    fn of(edge: &Edge, end: usize, p: DVec3) -> Option<Self> {
+        let (vertex, far) = (edge.ends[end], edge.ends[1 - end]);
+        let left = vertex.cross(p);
+        let ahead = left.cross(vertex);
+        let vague = NOISE / left.length() + NOISE / vertex.cross(far).length();
+        let times = i64::from(edge.times);
+        let gain = if end == 0 { times } else { -times };
+        (vague < VAGUE).then(|| Self { angle: far.dot(left).atan2(far.dot(ahead)), vague, gain })
+    }
+}
+
+/// The most that steps add up to on a way from angle 0 by up to half a circle, to either side.
+fn most(steps: &[Step], order: &mut Vec<(f64, i64)>) -> i64 {
+    let mut most = 0;
+    for side in [1, -1] {
+        order.clear();
+        for step in steps {
+            let (angle, gain, vague) = (step.angle * f64::from(side), step.gain * i64::from(side), step.vague);
+            // In doubt what raises comes first, and what lowers comes last or not at all.
+            if gain > 0 && (angle > -vague || angle < vague - PI) {
+                order.push((angle - vague, gain));
+            } else if gain < 0 && angle > vague {
+                order.push((angle + vague, gain));
+            }
+        }
+        order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
+        let mut sum = 0;
+        for (_, gain) in order.iter() {
+            sum += gain;
+            most = most.max(sum);
+        }
+    }
+    most
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_way_about_a_vertex_meets_what_is_on_its_side() {
+        let most = |steps: &[(f64, i64)]| {
+            let steps: Vec<Step> = steps.iter().map(|&(angle, gain)| Step { angle, vague: 1e-9, gain }).collect();
+            super::most(&steps, &mut Vec::new())
+        };
+        // Pleats: up and down in turn, never two at once.
+        let pleats: Vec<(f64, i64)> = (1..300).map(|i| (f64::from(i) * 0.01, if i % 2 == 0 { 1 } else { -1 })).collect();
+        assert_eq!(most(&pleats), 0);
+        assert_eq!(most(&pleats.iter().map(|&(angle, gain)| (angle, -gain)).collect::<Vec<_>>()), 1);
+        // To the right, everything is the other way round.
+        assert_eq!(most(&[(0.1, 2), (0.2, 3), (-0.1, 1), (-0.2, -4)]), 5);
+        assert_eq!(most(&[(0.1, 2), (0.2, -3), (-0.1, 1), (-0.2, -4)]), 3);
+        // Where their order is not known, what raises counts first.
+        assert_eq!(most(&[(0.1, -1), (0.1 + 1e-10, 1)]), 1);
+        assert_eq!(most(&[(0.1, -1), (0.1 + 1e-6, 1)]), 0);
+        assert_eq!(most(&[(-1e-10, 1)]), 1);
+    }
+}
