@@ -155,7 +155,8 @@ fn no_ray_crosses_more_layers_than_the_bound() {
             // What is found by trying is nearly all there is, and the search finds little more.
             assert!(bound <= most + most / 3 + 6, "round {round}, {light:?}: {bound} for {most}");
             // Without some of its silhouettes the bound is too small somewhere.
-            let fewer: Vec<[u32; 2]> = shape.edges.iter().copied().filter(|edge| (edge[0] ^ edge[1]) % 5 != 0).collect();
+            let fewer: Vec<[u32; 2]> =
+                shape.edges.iter().copied().filter(|edge| (edge[0] ^ edge[1]) % 5 != 0).collect();
             missed += usize::from(shape.search(&fewer, most.saturating_sub(1)).0);
         }
     }
@@ -165,7 +166,9 @@ fn no_ray_crosses_more_layers_than_the_bound() {
 #[test]
 fn triangles_around_one_vertex_are_as_many_layers_as_they_are() {
     for light in lights() {
-        for (segments, pleat, turns) in [(50_000, 0.0, 1.0), (3_000, 0.0, 7.0), (50_000, 0.001, 1.0), (3_000, 0.05, 2.0)] {
+        for (segments, pleat, turns) in
+            [(50_000, 0.0, 1.0), (3_000, 0.0, 7.0), (50_000, 0.001, 1.0), (3_000, 0.01, 2.0)]
+        {
             let shape = Shape::new(&fan(segments, pleat, turns), light);
             let (within, work) = shape.search(&shape.edges, 120);
             assert!(within, "{light:?}: {segments} segments, {turns} turns");

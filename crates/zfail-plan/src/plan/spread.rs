@@ -73,12 +73,7 @@ fn items(frame: &Frame<'_>, kind: &LightKind, pairs: &[Pair], placed: &[Placed])
 }
 
 /// Halves the sequence of items until all runs are proved to be within, between casters where possible.
-fn halve(
-    items: &[Item],
-    is_within: impl Fn(&[Item], &mut Work) -> bool,
-    work: &mut Work,
-    out: &mut Vec<Range<usize>>,
-) {
+fn halve(items: &[Item], is_within: impl Fn(&[Item], &mut Work) -> bool, work: &mut Work, out: &mut Vec<Range<usize>>) {
     let mut rest = Vec::new();
     let mut next = Some(0..items.len());
     while let Some(range) = next.take().or_else(|| rest.pop()) {
@@ -137,9 +132,11 @@ fn silhouette(topology: &Topology, weights: &[i8], run: &[Item], out: &mut Vec<(
     for item in run {
         let t = item.triangle as usize;
         let ([a, b, c], weight) = (topology.triangles[t], i32::from(weights[t]));
-        out.extend([(a, b), (b, c), (c, a)].map(|(from, to)| {
-            if from < to { ([from, to], weight) } else { ([to, from], -weight) }
-        }));
+        out.extend([(a, b), (b, c), (c, a)].map(
+            |(from, to)| {
+                if from < to { ([from, to], weight) } else { ([to, from], -weight) }
+            },
+        ));
     }
     out.sort_unstable();
     let mut kept = 0;

@@ -109,7 +109,8 @@ impl Outline {
         let sight = self.frame.sight(caster.world_from_object, caster.light);
         let first = self.edges.len();
         for edge in silhouette {
-            let vertices = if sight.turn > 0.0 { edge } else { [edge[1], edge[0]] }.map(|v| self.vertices.wrapping_add(v));
+            let vertices =
+                if sight.turn > 0.0 { edge } else { [edge[1], edge[0]] }.map(|v| self.vertices.wrapping_add(v));
             match self.edges[first..].last_mut() {
                 Some(last) if last.vertices == vertices => last.times += 1,
                 _ => {
@@ -147,7 +148,8 @@ impl Outline {
     /// Whether no ray crosses more than `limit` layers (a "no" may be mistaken, a "yes" never is).
     #[must_use]
     pub fn is_within(&self, limit: usize, work: &mut Work) -> bool {
-        let mut search = Search { edges: Vec::new(), limit: limit as i64, stack: Vec::new(), spokes: Spokes::default(), work };
+        let mut search =
+            Search { edges: Vec::new(), limit: limit as i64, stack: Vec::new(), spokes: Spokes::default(), work };
         (0..self.frame.faces()).all(|face| {
             search.edges.clear();
             let turned = self.edges.iter().map(|edge| edge.turned(face));
@@ -182,7 +184,10 @@ impl Search<'_> {
         if layers > self.limit || depth == 0 || !self.work.take(8 * members.len()) {
             return false;
         }
-        if layers + self.spokes.rise(cell, p, &self.edges, &self.stack[members.clone()]) <= self.limit {
+        let here = &self.stack[members.clone()];
+        if layers + self.spokes.rise_seen(p, &self.edges, here) <= self.limit
+            || layers + self.spokes.rise(cell, p, &self.edges, here) <= self.limit
+        {
             return true;
         }
         cell.quarters().iter().all(|child| {

@@ -1,18 +1,22 @@
-//! Many silhouettes that meet in one vertex: a cell that holds it never has few of them.
+//! Closer looks at a cell with many edges.
 //!
 //! In: the edges in a cell and a direction in it. Out: by how much the number of layers can grow on a straight way through the
-//! cell. About a vertex, edges are spokes, and a straight way turns about it by less than half a circle, to the left or to
+//! cell. A way in any one direction meets few edges of a chain, however finely that is divided. And where many silhouettes
+//! meet in one vertex, no cell that holds it has few of them: about the vertex, edges are spokes, and a straight way turns about it by less than half a circle, to the left or to
 //! the right: the most that the steps of the spokes on either way add up to is exact, where their absolute sum is not.
 
 use super::cell::{Cell, NOISE};
 use super::outline::Edge;
 use glam::DVec3;
 use std::cmp::Reverse;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
 /// Spokes so short, as seen from the light, that their angle is off by more than this are edges like any other.
 const VAGUE: f64 = 1e-3;
+
+/// As many edges at one vertex are no star.
+const FEW: usize = 4;
 
 /// Memory for looking at vertices.
 #[derive(Debug, Default)]
@@ -49,19 +53,63 @@ impl Spokes {
         let mut sum = 0;
         for star in stars.iter() {
             steps.clear();
-            let mut alone = 0;
             for &(_, k, end) in &ends[star.clone()] {
                 if let Some(step) = Step::of(edge(k), usize::from(end), p).filter(|_| !taken[k as usize]) {
                     taken[k as usize] = true;
-                    alone += i64::from(edge(k).rise(p));
                     steps.push(step);
                 }
             }
-            sum += alone.min(most(steps, order));
+            sum += most(steps, order);
         }
-        let others = (0..members.len() as u32).filter(|&k| !taken[k as usize]);
-        sum + others.map(|k| i64::from(edge(k).rise(p))).sum::<i64>()
+        let others = (0..members.len() as u32).filter(|&k| !taken[k as usize]).map(edge);
+        sum + deepest(p, others, order)
     }
+
+    /// The same, from directions alone.
+    pub fn rise_seen(&mut self, p: DVec3, edges: &[Edge], members: &[u32]) -> i64 {
+        deepest(p, members.iter().map(|&i| &edges[i as usize]), &mut self.order)
+    }
+}
+
+/// The most layers that edges add on a straight way from `p`: how many of those that raise their number lie that way.
+fn deepest<'e>(p: DVec3, edges: impl Iterator<Item = &'e Edge>, order: &mut Vec<(f64, i64)>) -> i64 {
+    let p = p.normalize();
+    let (east, north) = p.any_orthonormal_pair();
+    let mut everywhere = 0;
+    order.clear();
+    for edge in edges {
+        let times = i64::from(edge.rise(p));
+        if times == 0 {
+            continue;
+        }
+        let [a, b] = edge.ends.map(|end| {
+            let (x, y) = (end.dot(east), end.dot(north));
+            (y.atan2(x), NOISE / x.hypot(y))
+        });
+        let turn = (b.0 - a.0).rem_euclid(TAU);
+        // Less than half a circle; where it may be more, it may be anywhere.
+        let (from, by) = if turn <= PI { (a.0, turn) } else { (b.0, TAU - turn) };
+        let (from, to) = (from - a.1 - b.1, from + by + a.1 + b.1);
+        if a.1 + b.1 < VAGUE && to - from < 0.999 * PI {
+            let [from, to] = [from, to].map(|angle| angle.rem_euclid(TAU));
+            everywhere += if from > to { times } else { 0 };
+            order.extend([(from, times), (to, -times)]);
+        } else {
+            everywhere += times;
+        }
+    }
+    everywhere + highest(order)
+}
+
+/// The most that gains add up to in this order of angles; of equal ones in the order that makes it most.
+fn highest(order: &mut [(f64, i64)]) -> i64 {
+    order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
+    let (mut sum, mut most) = (0, 0);
+    for (_, gain) in order.iter() {
+        sum += gain;
+        most = most.max(sum);
+    }
+    most
 }
 
 /// Groups edges about the vertices from which they leave `cell`, the largest group first.
@@ -86,7 +134,7 @@ fn find<'e>(
     stars.clear();
     let mut start = 0;
     for star in ends.chunk_by(|a, b| a.0 == b.0) {
-        stars.extend((star.len() > 1).then_some(start..start + star.len()));
+        stars.extend((star.len() > FEW).then_some(start..start + star.len()));
         start += star.len();
     }
     stars.sort_unstable_by_key(|star| Reverse(star.len()));
@@ -119,12 +167,7 @@ fn most(steps: &[Step], order: &mut Vec<(f64, i64)>) -> i64 {
                 order.push((angle + vague, gain));
             }
         }
-        order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
-        let mut sum = 0;
-        for (_, gain) in order.iter() {
-            sum += gain;
-            most = most.max(sum);
-        }
+        most = most.max(highest(order));
     }
     most
 }
@@ -140,7 +183,8 @@ mod tests {
             super::most(&steps, &mut Vec::new())
         };
         // Pleats: up and down in turn, never two at once.
-        let pleats: Vec<(f64, i64)> = (1..300).map(|i| (f64::from(i) * 0.01, if i % 2 == 0 { 1 } else { -1 })).collect();
+        let pleats: Vec<(f64, i64)> =
+            (1..300).map(|i| (f64::from(i) * 0.01, if i % 2 == 0 { 1 } else { -1 })).collect();
         assert_eq!(most(&pleats), 0);
         assert_eq!(most(&pleats.iter().map(|&(angle, gain)| (angle, -gain)).collect::<Vec<_>>()), 1);
         // To the right, everything is the other way round.
