@@ -103,6 +103,30 @@ fn a_scene_without_shadows_proves_too_little_and_says_so() {
     assert!(last.starts_with("too little is proved: 0 wrong among ") && last.contains("in shadow"), "{last}");
 }
 
+/// 280 discs over a floor, each of 200 triangles around its middle: more layers than 8 bits can count.
+#[test]
+fn deep_stacks_of_fans_are_right() {
+    if !has_gpu() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let (mut vertices, mut faces) =
+        (String::from("v -4 -1 4\nv 4 -1 4\nv 4 -1 -4\nv -4 -1 -4\n"), String::from("f 1 2 3 4\n"));
+    for disc in 0..280 {
+        let (height, first) = (f64::from(disc) * 0.005, 5 + disc * 201);
+        vertices += &format!("v 0 {height} 0\n");
+        for i in 0..200 {
+            let (sin, cos) = (std::f64::consts::TAU * f64::from(i) / 200.0).sin_cos();
+            vertices += &format!("v {cos} {height} {sin}\n");
+            faces += &format!("f {first} {} {}\n", first + 1 + (i + 1) % 200, first + 1 + i);
+        }
+    }
+    fs::write(folder.path().join("discs.obj"), vertices + &faces).unwrap();
+    let verify = ["verify", "discs.obj", "--size", "96x60", "--technique", "everitt-kilgard,auto", "--json", "-q"];
+    let report: Value = serde_json::from_str(&zfail(folder.path(), &verify).ok().stdout).unwrap();
+    assert_eq!((&report["passed"], &report["proof"]["enough"]), (&true.into(), &true.into()));
+}
+
 #[test]
 fn adapters_are_listed_in_the_order_of_preference() {
     if !has_gpu() {

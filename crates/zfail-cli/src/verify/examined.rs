@@ -75,7 +75,7 @@ impl Judge<'_> {
         let size = shot.view.size.map(|side| side.div_ceil(SCALE));
         let start = Instant::now();
         let casts = CastTable::double(&shot.scene);
-        self.oracle.judge(&View { size, ..shot.view }, &shot.scene.lights[light], &casts);
+        let _truth = self.oracle.judge(&View { size, ..shot.view }, &shot.scene.lights[light], &casts);
         let pixels = |[width, height]: [u32; 2]| f64::from(width) * f64::from(height);
         let share = pixels(shot.view.size) / pixels(size);
         match foreseen(start.elapsed().as_secs_f64() * share * shot.lights.len() as f64) {

@@ -15,7 +15,7 @@ use glam::{DAffine3, DVec4};
 /// Layers a stencil of 8 bits can tell from zero, less a few for pixels on rounded silhouettes.
 pub(super) const SINGLE: usize = 250;
 /// What the search for a proof, and for a division, may look at: a second or so.
-const WORK: u64 = 1 << 26;
+const WORK: u64 = 1 << 25;
 
 /// Remembers one light's division while nothing moves.
 #[derive(Debug, Default)]

@@ -16,6 +16,7 @@ use crate::topology::{Cover, NONE, Part, Topology};
 use crate::view::{Projection, View};
 use crate::volume::{self, Volume};
 use glam::DAffine3;
+use std::collections::BTreeMap;
 
 /// What becomes of a pair this frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -174,31 +175,68 @@ impl Pair {
         if self.is_built() {
             return;
         }
-        // Of a caster among many, few.
-        let weighted = self.batch_of.iter().zip(&self.weights).filter(|(_, weight)| **weight != 0).map(|(&b, _)| b);
-        let (first, last) = weighted.fold((u16::MAX, 0), |(lo, hi), batch| (lo.min(batch), hi.max(batch)));
-        let mut used = 0;
-        for batch in first.min(last)..=last {
-            self.mask(batch);
-            if self.masked.iter().all(|&c| c == 0) {
-                continue;
+        let converging = is_converging(self.light, self.finite);
+        self.live = 0;
+        if self.batch_of.is_empty() {
+            if self.casting > 0 {
+                let indices = self.open_piece(0);
+                let mut sides = std::mem::take(indices);
+                volume::sides(topology, &self.weights, converging, &mut sides);
+                self.close_piece(sides);
             }
-            if used == self.pieces.len() {
-                self.pieces.push(Piece::default());
+        } else {
+            // Of a caster among many, few; of a caster alone, perhaps hundreds, so that edges are gone through once.
+            let mut silhouettes = BTreeMap::<u16, Vec<([u32; 2], i32)>>::new();
+            for (t, &batch) in self.batch_of.iter().enumerate() {
+                if self.weights[t] != 0 {
+                    silhouettes.entry(batch).or_default();
+                }
             }
-            let piece = &mut self.pieces[used];
-            (piece.batch, piece.fresh) = (batch, true);
-            piece.have = Parts { sides: true, ..Parts::default() };
-            piece.indices.clear();
-            volume::sides(topology, &self.masked, is_converging(self.light, self.finite), &mut piece.indices);
-            let end = piece.indices.len() as u32;
-            piece.volume =
-                Volume { sides: 0..end, dark_cap: end..end, light_cap: end..end, light_cap_reversed: end..end };
-            piece.exposed = [end; 2];
-            used += 1;
+            let mut sums: Vec<(u16, i32)> = Vec::new();
+            for (edge, incident) in topology.incidence() {
+                sums.clear();
+                for (t, orientation) in incident.iter().filter(|&(t, _)| self.weights[t] != 0) {
+                    let (batch, times) = (self.batch_of[t], i32::from(self.weights[t]) * orientation);
+                    match sums.iter_mut().find(|sum| sum.0 == batch) {
+                        Some(sum) => sum.1 += times,
+                        None => sums.push((batch, times)),
+                    }
+                }
+                for &(batch, times) in sums.iter().filter(|sum| sum.1 != 0) {
+                    silhouettes.entry(batch).or_default().push((edge, times));
+                }
+            }
+            for (batch, silhouette) in silhouettes {
+                let mut sides = std::mem::take(self.open_piece(batch));
+                for (edge, times) in silhouette {
+                    volume::side(edge, times, converging, &mut sides);
+                }
+                self.close_piece(sides);
+            }
         }
-        self.live = used;
         self.built = true;
+    }
+
+    /// Begins the next piece: its index list, empty.
+    fn open_piece(&mut self, batch: u16) -> &mut Vec<u32> {
+        if self.live == self.pieces.len() {
+            self.pieces.push(Piece::default());
+        }
+        let piece = &mut self.pieces[self.live];
+        (piece.batch, piece.fresh) = (batch, true);
+        piece.have = Parts { sides: true, ..Parts::default() };
+        piece.indices.clear();
+        &mut piece.indices
+    }
+
+    /// Ends it with its sides.
+    fn close_piece(&mut self, sides: Vec<u32>) {
+        let piece = &mut self.pieces[self.live];
+        let end = sides.len() as u32;
+        piece.indices = sides;
+        piece.volume = Volume { sides: 0..end, dark_cap: end..end, light_cap: end..end, light_cap_reversed: end..end };
+        piece.exposed = [end; 2];
+        self.live += 1;
     }
 
     /// The closed volumes that together are the pair's.

@@ -178,21 +178,21 @@ mod tests {
 
     #[test]
     fn a_way_about_a_vertex_meets_what_is_on_its_side() {
-        let most = |steps: &[(f64, i64)]| {
+        let greatest = |steps: &[(f64, i64)]| {
             let steps: Vec<Step> = steps.iter().map(|&(angle, gain)| Step { angle, vague: 1e-9, gain }).collect();
-            super::most(&steps, &mut Vec::new())
+            most(&steps, &mut Vec::new())
         };
         // Pleats: up and down in turn, never two at once.
         let pleats: Vec<(f64, i64)> =
             (1..300).map(|i| (f64::from(i) * 0.01, if i % 2 == 0 { 1 } else { -1 })).collect();
-        assert_eq!(most(&pleats), 0);
-        assert_eq!(most(&pleats.iter().map(|&(angle, gain)| (angle, -gain)).collect::<Vec<_>>()), 1);
+        assert_eq!(greatest(&pleats), 0);
+        assert_eq!(greatest(&pleats.iter().map(|&(angle, gain)| (angle, -gain)).collect::<Vec<_>>()), 1);
         // To the right, everything is the other way round.
-        assert_eq!(most(&[(0.1, 2), (0.2, 3), (-0.1, 1), (-0.2, -4)]), 5);
-        assert_eq!(most(&[(0.1, 2), (0.2, -3), (-0.1, 1), (-0.2, -4)]), 3);
+        assert_eq!(greatest(&[(0.1, 2), (0.2, 3), (-0.1, 1), (-0.2, -4)]), 5);
+        assert_eq!(greatest(&[(0.1, 2), (0.2, -3), (-0.1, 1), (-0.2, -4)]), 3);
         // Where their order is not known, what raises counts first.
-        assert_eq!(most(&[(0.1, -1), (0.1 + 1e-10, 1)]), 1);
-        assert_eq!(most(&[(0.1, -1), (0.1 + 1e-6, 1)]), 0);
-        assert_eq!(most(&[(-1e-10, 1)]), 1);
+        assert_eq!(greatest(&[(0.1, -1), (0.1 + 1e-10, 1)]), 1);
+        assert_eq!(greatest(&[(0.1, -1), (0.1 + 1e-6, 1)]), 0);
+        assert_eq!(greatest(&[(-1e-10, 1)]), 1);
     }
 }

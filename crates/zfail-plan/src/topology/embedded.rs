@@ -15,7 +15,7 @@ type Point = [f64; 3];
 /// Triangles below this many in a node are compared pair by pair.
 const LEAF: usize = 8;
 /// Pairs compared per triangle at most. Ordinary meshes need about a hundred; n triangles around one vertex need n / 2.
-const PAIRS: usize = 1024;
+const PAIRS: usize = 512;
 
 /// Whether `triangles` (of one part) meet only in shared vertices and edges.
 pub(super) fn is_embedded(topology: &Topology, triangles: &[u32]) -> bool {
