@@ -178,6 +178,26 @@ pub fn lights(scene: &Scene, wanted: &[usize]) -> Result<Vec<usize>, Error> {
     Ok(lights)
 }
 
+/// What is to be said before shadows that take long: what makes them so, and what takes less.
+pub fn effort(scene: &Scene, lights: &[usize]) -> Option<String> {
+    /// Triangles of casters under all lights, from which on a picture takes seconds and much memory.
+    const MANY: usize = 10_000_000;
+    /// What each of them takes in index lists, here and on the device.
+    const BYTES: f64 = 70.0;
+    let casters = scene.instances.iter().filter(|instance| instance.casts_shadow);
+    let triangles: usize = casters.map(|instance| scene.meshes[instance.mesh].triangles.len()).sum();
+    let all = triangles.saturating_mul(lights.len());
+    (all > MANY).then(|| {
+        format!(
+            "the shadows of {triangles} triangles in {} instances under {} lights take about {:.1} GB of memory and a \
+             while; fewer lights (--light N) or --no-shadows take less",
+            scene.instances.len(),
+            lights.len(),
+            all as f64 * BYTES / 1e9
+        )
+    })
+}
+
 /// Opens the GPU that `device` asks for.
 ///
 /// # Errors
@@ -211,7 +231,7 @@ pub fn chain(error: &dyn std::error::Error) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::lights;
+    use super::{effort, lights};
     use zfail_plan::scene::{Light, LightKind, LightShape, Scene};
 
     #[test]
@@ -228,5 +248,18 @@ mod tests {
         assert_eq!(lights(&scene, &[]), Ok(vec![0, 1, 2]));
         assert_eq!(lights(&scene, &[2, 0, 2]), Ok(vec![0, 2]));
         assert!(lights(&scene, &[0, 3]).unwrap_err().to_string().starts_with("unknown light '3'; there are: 0 'sun'"));
+    }
+
+    #[test]
+    fn many_copies_under_many_lights_are_said_to_take_long() {
+        let mut scene = zfail_scene::builtin::scene("jail").unwrap();
+        assert_eq!(effort(&scene, &[0, 1]), None);
+        let copy = scene.instances[0].clone();
+        let triangles = scene.meshes[copy.mesh].triangles.len();
+        scene.instances = vec![copy; 11_000_000 / triangles];
+        let said = effort(&scene, &[0]).unwrap();
+        assert!(said.contains("instances") && said.contains("--light N"), "{said}");
+        scene.instances.iter_mut().for_each(|instance| instance.casts_shadow = false);
+        assert_eq!(effort(&scene, &[0]), None);
     }
 }

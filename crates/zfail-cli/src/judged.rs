@@ -7,14 +7,16 @@ use zfail_oracle::{Doubt, Truth};
 use zfail_plan::scene::{LightKind, Scene};
 
 /// A light and the pixels at which its verdict is known.
-#[derive(Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct JudgedLight {
     /// Its number in the scene.
     pub light: usize,
     pub name: String,
     pub kind: &'static str,
-    /// Pixels with a surface that are compared.
+    /// Pixels with a surface within the light's reach that are compared.
     pub checked: usize,
+    /// Compared pixels with a surface that the light does not reach, so that it is dark whatever casts shadows.
+    pub out_of_reach: usize,
     /// Pixels without one that are compared.
     pub background: usize,
     /// Of the checked ones.
@@ -23,6 +25,8 @@ pub struct JudgedLight {
     pub shadowed: usize,
     /// Pixels left out, by reason.
     pub excluded: BTreeMap<&'static str, usize>,
+    /// Why what was compared may hide what is wrong, if more is left out than boundaries explain.
+    pub leaves_out: Option<String>,
     /// Why a pass would mean little.
     pub proves_little: Option<String>,
 }
@@ -44,11 +48,13 @@ impl JudgedLight {
                 LightKind::Spot { .. } => "spot",
                 LightKind::Directional { .. } => "directional",
             },
-            checked: ideal.checked,
+            checked: ideal.checked - ideal.unreached,
+            out_of_reach: ideal.unreached,
             background: ideal.background,
             lit: ideal.lit,
             shadowed: ideal.shadowed,
             excluded: excluded.filter(|(_, pixels)| *pixels > 0).collect(),
+            leaves_out: ideal.budget().err().map(|over| over.to_string()),
             proves_little: proves_little(&ideal),
         })
     }
@@ -59,7 +65,7 @@ fn proves_little(report: &zfail_oracle::Report) -> Option<String> {
     if let Err(over) = report.budget() {
         return Some(format!("{over}; a larger --size leaves out fewer"));
     }
-    let few = |share: usize| (share as f64) < 0.001 * report.checked.max(1) as f64;
+    let few = |share: usize| (share as f64) < 0.001 * (report.checked - report.unreached).max(1) as f64;
     match (few(report.lit), few(report.shadowed)) {
         (true, true) => Some("hardly any pixel is within the light's reach".to_owned()),
         (true, false) => Some("hardly any pixel is lit".to_owned()),

@@ -25,7 +25,8 @@ fn hard_scenes_pass_and_say_what_was_checked() {
         for light in found {
             let number = |key: &str| light[key].as_u64().unwrap();
             let excluded: u64 = light["excluded"].as_object().unwrap().values().map(|n| n.as_u64().unwrap()).sum();
-            assert_eq!(number("checked") + number("background") + excluded, 96 * 54, "{scene}");
+            let all = number("checked") + number("out_of_reach") + number("background") + excluded;
+            assert_eq!(all, 96 * 54, "{scene}");
             assert!(number("lit") > 50 && number("shadowed") > 50, "{scene}: {light}");
             let rows = light["techniques"].as_array().unwrap();
             assert_eq!(rows.iter().map(|row| row["technique"].as_str().unwrap()).collect::<Vec<_>>(), TECHNIQUES);
@@ -45,7 +46,8 @@ fn reports_go_into_folders_of_their_own() {
     let verify =
         ["verify", "small.gltf", "--size", "64x48", "--technique", "auto", "--light", "1", "--report", "new/r"];
     let run = zfail(folder.path(), &verify).ok();
-    assert!(run.stdout.ends_with("pass: 0 wrong pixels\n"), "{}", run.stdout);
+    let last = run.stdout.lines().last().unwrap();
+    assert!(last.starts_with("proved: 0 wrong among "), "{}", run.stdout);
     assert!(run.stdout.contains("light 1 'lamp', point: ") && !run.stdout.contains("light 0"), "{}", run.stdout);
     let report = folder.path().join("new/r");
     assert_eq!(files(&report), ["light-1-checked.png", "light-1-expected.png", "report.json"]);
@@ -56,6 +58,73 @@ fn reports_go_into_folders_of_their_own() {
     // A camera that is not there is found before anything is written.
     zfail(folder.path(), &["verify", "small.gltf", "--camera", "abov", "--report", "other"]).fails(2, &["'above'"]);
     assert!(!folder.path().join("other").exists());
+}
+
+#[test]
+fn what_one_picture_does_not_prove_closer_ones_do() {
+    if !has_gpu() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let verify = |more: &[&str]| {
+        let all =
+            [&["verify", "builtin:jail", "--size", "24x14", "--technique", "auto", "--json", "-q"], more].concat();
+        zfail(folder.path(), &all)
+    };
+    let report: Value = serde_json::from_str(&verify(&[]).ok().stdout).unwrap();
+    let closeups = report["closeups"].as_array().unwrap();
+    assert!(!closeups.is_empty() && closeups.len() < 40, "{}", closeups.len());
+    assert_eq!((&report["passed"], &report["proof"]["enough"]), (&true.into(), &true.into()));
+    assert_eq!(report["proof"]["views"], 1 + closeups.len());
+    for light in report["proof"]["lights"].as_array().unwrap() {
+        assert!(light["lit"].as_u64().unwrap() >= 100 && light["shadowed"].as_u64().unwrap() >= 100, "{light}");
+    }
+
+    // The picture alone proves too little, which is no success unless that is what was asked for.
+    let alone = verify(&["--no-closeups"]);
+    assert_eq!(alone.code, Some(1));
+    assert!(alone.stderr.starts_with("zfail: error: too little is proved: 0 wrong among "), "{}", alone.stderr);
+    let report: Value = serde_json::from_str(&alone.stdout).unwrap();
+    assert_eq!((&report["passed"], &report["proof"]["enough"]), (&true.into(), &false.into()));
+    verify(&["--no-closeups", "--allow-little-proof"]).ok();
+}
+
+#[test]
+fn a_scene_without_shadows_proves_too_little_and_says_so() {
+    if !has_gpu() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    // A floor that nothing stands on, seen from above, lit from there.
+    fs::write(folder.path().join("floor.obj"), "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\nf 1 2 3 4\n").unwrap();
+    let run = zfail(folder.path(), &["verify", "floor.obj", "--size", "64x36", "--technique", "auto", "-q"]);
+    assert_eq!(run.code, Some(1), "{}", run.stdout);
+    let last = run.stdout.lines().last().unwrap();
+    assert!(last.starts_with("too little is proved: 0 wrong among ") && last.contains("in shadow"), "{last}");
+}
+
+/// 280 discs over a floor, each of 200 triangles around its middle: more layers than 8 bits can count.
+#[test]
+fn deep_stacks_of_fans_are_right() {
+    if !has_gpu() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let (mut vertices, mut faces) =
+        (String::from("v -4 -1 4\nv 4 -1 4\nv 4 -1 -4\nv -4 -1 -4\n"), String::from("f 1 2 3 4\n"));
+    for disc in 0..280 {
+        let (height, first) = (f64::from(disc) * 0.005, 5 + disc * 201);
+        vertices += &format!("v 0 {height} 0\n");
+        for i in 0..200 {
+            let (sin, cos) = (std::f64::consts::TAU * f64::from(i) / 200.0).sin_cos();
+            vertices += &format!("v {cos} {height} {sin}\n");
+            faces += &format!("f {first} {} {}\n", first + 1 + (i + 1) % 200, first + 1 + i);
+        }
+    }
+    fs::write(folder.path().join("discs.obj"), vertices + &faces).unwrap();
+    let verify = ["verify", "discs.obj", "--size", "96x60", "--technique", "everitt-kilgard,auto", "--json", "-q"];
+    let report: Value = serde_json::from_str(&zfail(folder.path(), &verify).ok().stdout).unwrap();
+    assert_eq!((&report["passed"], &report["proof"]["enough"]), (&true.into(), &true.into()));
 }
 
 #[test]

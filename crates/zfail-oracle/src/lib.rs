@@ -32,7 +32,7 @@ use cone::Apex;
 use lens::Lens;
 use rayon::prelude::*;
 use shade::{Shader, Source};
-use sight::Looker;
+use sight::{Looker, Sight};
 use soup::Soup;
 use zfail_plan::{
     scene::{Light, LightKind, Scene},
@@ -44,8 +44,6 @@ pub struct Oracle {
     soup: Soup,
     bvh: Bvh,
     guards: Guards,
-    instances: usize,
-    extent: f64,
 }
 
 impl Oracle {
@@ -59,26 +57,35 @@ impl Oracle {
     #[must_use]
     pub fn with_guards(scene: &Scene, guards: Guards) -> Self {
         let soup = Soup::new(scene);
-        let bvh = Bvh::new(&soup.triangles);
-        let extent = soup.triangles.iter().map(|t| t.extent).fold(0.0, f64::max);
-        Self { soup, bvh, guards, instances: scene.instances.len(), extent }
+        let bvh = Bvh::new(&soup);
+        Self { soup, bvh, guards }
     }
 
     /// Judges every pixel of `view` for one light; `casts` weighs the count, not the verdict.
     #[must_use]
     pub fn judge(&self, view: &View, light: &Light, casts: &CastTable) -> Truth {
-        let Self { soup, bvh, guards, extent, .. } = self;
-        let extent = *extent;
+        let Self { soup, bvh, guards } = self;
         let lens = &Lens::new(view, soup.origin);
         let source = &self.source(light);
-        let looker = Looker { soup, bvh, lens, guards, extent };
-        let shader = Shader { soup, bvh, lens, guards, source, casts, extent };
+        let looker = Looker { soup, bvh, lens, guards };
+        let shader = Shader { soup, bvh, lens, guards, source, casts };
         let [width, height] = view.size;
         let pixels = (0..height).into_par_iter().flat_map_iter(|y| {
             let (looker, shader) = (&looker, &shader);
             (0..width).map(move |x| truth::judge(looker, shader, f64::from(x) + 0.5, f64::from(y) + 0.5))
         });
         Truth { size: view.size, guards: self.guards, pixels: pixels.collect() }
+    }
+
+    /// How far away, along the view axis, the surface is that `view` shows at `(x, y)`, in pixels from the upper left corner;
+    /// `None` where there is none, or it cannot be told.
+    #[must_use]
+    pub fn depth(&self, view: &View, x: f64, y: f64) -> Option<f64> {
+        let Self { soup, bvh, guards } = self;
+        let lens = &Lens::new(view, soup.origin);
+        let Sight::Faces(faces) = (Looker { soup, bvh, lens, guards }).look(x, y) else { return None };
+        let face = soup.triangle(faces.first()?.triangle);
+        Some(Lens::meet(&lens.ray(x, y), face.v[0], face.normal)).filter(|depth| depth.is_finite())
     }
 
     fn source(&self, light: &Light) -> Source {
@@ -90,7 +97,7 @@ impl Oracle {
             }
             LightKind::Directional { direction } => Apex::Direction(*direction),
         };
-        let excluded = (0..self.instances).map(|i| light.excluded.contains(&i)).collect();
+        let excluded = (0..self.soup.placements.len()).map(|i| light.excluded.contains(&i)).collect();
         Source { apex, light, excluded }
     }
 }

@@ -15,6 +15,8 @@ pub struct Report {
     pub surfaces: usize,
     /// Pixels with a surface that were compared.
     pub checked: usize,
+    /// Of those, how many the light does not reach, so that they are dark whatever blocks it.
+    pub unreached: usize,
     /// Pixels without a surface that were compared.
     pub background: usize,
     /// Compared pixels that are not right.
@@ -147,6 +149,7 @@ impl Truth {
         let mut report = Report {
             surfaces: 0,
             checked: 0,
+            unreached: 0,
             background: 0,
             wrong: Vec::new(),
             excluded: [0; Doubt::ALL.len()],
@@ -166,6 +169,7 @@ impl Truth {
             let Some(expected) = expected(pixel) else { continue };
             if pixel.surface {
                 report.checked += 1;
+                report.unreached += usize::from(!pixel.reached);
                 report.lit += usize::from(pixel.reached && pixel.lit);
                 report.shadowed += usize::from(pixel.reached && !pixel.lit);
                 report.max_count = report.max_count.max(pixel.count);

@@ -10,7 +10,7 @@ use crate::{
     guard::{Doubt, FACING, Guards, ROUNDING, SNAP},
     lens::{Lens, Ray},
     sight::{Face, surface_error},
-    soup::{Soup, Triangle},
+    soup::{Id, Soup, Triangle},
 };
 use glam::DVec3;
 use zfail_plan::scene::{Light, LightKind};
@@ -44,8 +44,6 @@ pub(crate) struct Shader<'a> {
     pub guards: &'a Guards,
     pub source: &'a Source,
     pub casts: &'a CastTable,
-    /// Largest [`Triangle::extent`].
-    pub extent: f64,
 }
 
 /// What blocks the light: whether anything does, and the sum of weights.
@@ -63,8 +61,8 @@ impl Blockers {
 }
 
 /// A triangle whose crossing is not the same everywhere within the guards.
-struct Close<'a> {
-    triangle: &'a Triangle,
+struct Close {
+    triangle: Triangle,
     normals: [DVec3; 3],
     faces_light: bool,
     weight: i32,
@@ -72,10 +70,10 @@ struct Close<'a> {
     continues_face: bool,
 }
 
-impl Close<'_> {
+impl Close {
     /// Whether the ray from the light to `point`, which the eye sees along `view`, crosses the triangle.
     fn is_crossed(&self, point: DVec3, view: DVec3) -> bool {
-        let t = self.triangle;
+        let t = &self.triangle;
         let height = t.normal.dot(point - t.v[0]);
         let noise = 1e-12 * t.normal.length() * (point.length() + point.distance(t.v[0]));
         // A point in the plane counts as being just on the eye's side of it, as it does on its own triangle.
@@ -97,7 +95,7 @@ struct Spot {
 impl Shader<'_> {
     /// Judges `face` as seen through the pixel whose centre is `(x, y)`.
     pub fn shade(&self, x: f64, y: f64, face: Face) -> Shade {
-        let triangle = &self.soup.triangles[face.triangle as usize];
+        let triangle = &self.soup.triangle(face.triangle);
         let ray = self.lens.ray(x, y);
         let Some(spot) = self.spot([x, y], &ray, triangle) else {
             let doubt = Some(Doubt::Surface);
@@ -185,19 +183,20 @@ impl Shader<'_> {
     }
 
     /// Whether `point`, with a margin, lies in the cone of `triangle` or of faces that continue it.
-    fn is_within<'t>(&'t self, mut triangle: &'t Triangle, facing: Facing, point: DVec3, margin: f64) -> bool {
+    fn is_within(&self, triangle: &Triangle, facing: Facing, point: DVec3, margin: f64) -> bool {
         const STEPS: u32 = 8;
         let inside = if facing == Facing::Front { -1.0 } else { 1.0 };
+        let mut triangle = *triangle;
         for _ in 0..STEPS {
             let normals = self.source.apex.edge_normals(&triangle.v);
             let sides = cone::sides(&triangle.v, &normals, point);
             let beyond: [f64; 3] = std::array::from_fn(|i| -inside * sides[i] / normals[i].length());
-            if (0..3).any(|i| beyond[i] > -margin && !self.continues(triangle, facing, i)) {
+            if (0..3).any(|i| beyond[i] > -margin && !self.continues(&triangle, facing, i)) {
                 return false;
             }
             let Some(i) = (0..3).max_by(|&i, &j| beyond[i].total_cmp(&beyond[j])) else { return false };
             match triangle.neighbours[i] {
-                Some(next) if beyond[i] > 0.0 => triangle = &self.soup.triangles[next as usize],
+                Some(next) if beyond[i] > 0.0 => triangle = self.soup.triangle(next),
                 _ => return true,
             }
         }
@@ -207,32 +206,25 @@ impl Shader<'_> {
     /// Whether the caster goes on beyond edge `i` with a face turned alike, so that no side of a volume stands on it.
     fn continues(&self, triangle: &Triangle, facing: Facing, i: usize) -> bool {
         triangle.neighbours[i].is_some_and(|n| {
-            let neighbour = &self.soup.triangles[n as usize];
+            let neighbour = &self.soup.triangle(n);
             self.casts_at(neighbour) && self.facing(neighbour) == facing
         })
     }
 
     /// Adds to `certain` what blocks the light wherever the spot moves, and returns what might.
-    fn gather(
-        &self,
-        face: u32,
-        spot: &Spot,
-        own: Blockers,
-        certain: &mut Blockers,
-        doubts: &mut Doubts,
-    ) -> Vec<Close<'_>> {
-        let receiver = &self.soup.triangles[face as usize];
+    fn gather(&self, face: Id, spot: &Spot, own: Blockers, certain: &mut Blockers, doubts: &mut Doubts) -> Vec<Close> {
+        let receiver = &self.soup.triangle(face);
         let Slack { ellipse: [u, w], line, radius } = spot.slack;
         let (towards, reach) = match self.source.apex {
             Apex::Point(light) => (light - spot.point, 1.0),
             Apex::Direction(direction) => (-direction, f64::INFINITY),
         };
         let wander = (u.length_squared() + w.length_squared()).sqrt() + line.length() + radius;
-        let width = |distance: f64| wander + ROUNDING * (self.extent + distance);
+        let width = |distance: f64| wander + ROUNDING * (self.soup.extent + distance);
         let mut close = Vec::new();
-        self.bvh.visit(spot.point, towards, reach, width, |index, _| {
-            let triangle = &self.soup.triangles[index as usize];
-            if index == face || !self.casts_at(triangle) {
+        self.bvh.visit(self.soup, spot.point, towards, reach, width, |id, _| {
+            let triangle = &self.soup.triangle(id);
+            if id == face || !self.casts_at(triangle) {
                 return;
             }
             if receiver.coincides(triangle) {
@@ -252,7 +244,7 @@ impl Shader<'_> {
                     let continues_face = receiver.touches(triangle)
                         && self.casts_at(receiver)
                         && self.facing(receiver) == self.facing(triangle);
-                    close.push(Close { triangle, normals, faces_light, weight, continues_face });
+                    close.push(Close { triangle: *triangle, normals, faces_light, weight, continues_face });
                 }
             }
         });
@@ -328,16 +320,16 @@ impl Shader<'_> {
     }
 
     /// Compares all probes that see the face; returns the answer at the innermost one.
-    fn probe(&self, face: Face, spot: &Spot, close: &[Close<'_>], certain: Blockers, doubts: &mut Doubts) -> Blockers {
+    fn probe(&self, face: Face, spot: &Spot, close: &[Close], certain: Blockers, doubts: &mut Doubts) -> Blockers {
         if close.is_empty() {
             return certain;
         }
-        let sum = |crossed: &dyn Fn(&Close<'_>) -> bool| {
+        let sum = |crossed: &dyn Fn(&Close) -> bool| {
             let mut blockers = certain;
             close.iter().filter(|c| crossed(c)).for_each(|c| blockers.add(c.weight));
             blockers
         };
-        let triangle = &self.soup.triangles[face.triangle as usize];
+        let triangle = &self.soup.triangle(face.triangle);
         let [x, y] = spot.pixel;
         let mut nominal = None;
         for (i, [dx, dy]) in self.guards.offsets().into_iter().enumerate() {
@@ -351,7 +343,7 @@ impl Shader<'_> {
             let nominal = *nominal.get_or_insert_with(|| {
                 let error = ray.direction * surface_error(self.lens, self.guards, triangle, &ray, depth);
                 for moved in [point - error, point + error] {
-                    let at = |c: &Close<'_>| c.is_crossed(if c.continues_face { point } else { moved }, ray.direction);
+                    let at = |c: &Close| c.is_crossed(if c.continues_face { point } else { moved }, ray.direction);
                     doubts.compare(Doubt::Depth, here, sum(&at));
                 }
                 here

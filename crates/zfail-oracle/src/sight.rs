@@ -8,7 +8,7 @@ use crate::{
     cone::{self, Place, Slack},
     guard::{Guards, PROBES, ROUNDING, SNAP},
     lens::{Lens, Ray},
-    soup::{Soup, Triangle},
+    soup::{Id, Soup, Triangle},
 };
 use glam::DVec3;
 
@@ -24,7 +24,7 @@ pub(crate) enum Sight {
 /// A triangle that may be the one a pixel shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Face {
-    pub triangle: u32,
+    pub triangle: Id,
     /// Bit i: it is first along the ray through probe i.
     pub probes: u64,
 }
@@ -38,14 +38,12 @@ pub(crate) struct Looker<'a> {
     pub bvh: &'a Bvh,
     pub lens: &'a Lens,
     pub guards: &'a Guards,
-    /// Largest [`Triangle::extent`].
-    pub extent: f64,
 }
 
 /// A triangle that the ray through the centre, or one within the guard, may meet.
-struct Candidate<'a> {
-    triangle: &'a Triangle,
-    index: u32,
+struct Candidate {
+    triangle: Triangle,
+    id: Id,
     normals: [DVec3; 3],
     /// Every ray within the guard meets it.
     certain: bool,
@@ -56,7 +54,7 @@ struct Candidate<'a> {
 }
 
 struct Hit {
-    index: u32,
+    id: Id,
     /// Least and greatest depth within rounding.
     range: [f64; 2],
 }
@@ -72,27 +70,28 @@ impl Looker<'_> {
         match &candidates[..] {
             [] => Sight::Nothing,
             [one] if one.certain && !self.is_clipped([one.nearest, one.farthest]) => {
-                Sight::Faces(vec![Face { triangle: one.index, probes: (1 << PROBES) - 1 }])
+                Sight::Faces(vec![Face { triangle: one.id, probes: (1 << PROBES) - 1 }])
             }
             several => self.probe(x, y, several),
         }
     }
 
     /// All visible triangles that a ray within the guard may meet first.
-    fn candidates(&self, ray: &Ray) -> Vec<Candidate<'_>> {
+    fn candidates(&self, ray: &Ray) -> Vec<Candidate> {
         let lens = self.lens;
         let (apex, aim) = (lens.apex(), lens.aim(ray));
         let ellipse = lens.per_pixel().map(|axis| axis * self.guards.epsilon);
         let length = ray.direction.length();
         let width = |distance: f64| {
-            self.guards.epsilon * lens.pixel_at(distance).max(lens.pixel_at(0.0)) + ROUNDING * (self.extent + distance)
+            self.guards.epsilon * lens.pixel_at(distance).max(lens.pixel_at(0.0))
+                + ROUNDING * (self.soup.extent + distance)
         };
         let [near, far] = lens.depths;
         let start = near.min(0.0);
         let origin = ray.origin + ray.direction * start;
-        let mut found: Vec<Candidate<'_>> = Vec::new();
-        self.bvh.visit(origin, ray.direction, f64::INFINITY, width, |index, reach| {
-            let triangle = &self.soup.triangles[index as usize];
+        let mut found: Vec<Candidate> = Vec::new();
+        self.bvh.visit(self.soup, origin, ray.direction, f64::INFINITY, width, |id, reach| {
+            let triangle = &self.soup.triangle(id);
             if !triangle.visible {
                 return;
             }
@@ -125,7 +124,7 @@ impl Looker<'_> {
                 return;
             }
             if nearest - start <= *reach {
-                found.push(Candidate { triangle, index, normals, certain, nearest, farthest });
+                found.push(Candidate { triangle: *triangle, id, normals, certain, nearest, farthest });
             }
             if certain && nearest > near {
                 *reach = reach.min(farthest - start);
@@ -138,7 +137,7 @@ impl Looker<'_> {
     }
 
     /// Looks along the rays through all probes.
-    fn probe(&self, x: f64, y: f64, candidates: &[Candidate<'_>]) -> Sight {
+    fn probe(&self, x: f64, y: f64, candidates: &[Candidate]) -> Sight {
         let mut faces: Vec<Face> = Vec::new();
         let mut misses = 0;
         let mut first_at_centre = f64::INFINITY;
@@ -155,17 +154,17 @@ impl Looker<'_> {
                     return Sight::Doubtful;
                 }
                 // Of coincident triangles one stands for all.
-                let triangle = &self.soup.triangles[hit.index as usize];
-                let known = |f: &&mut Face| self.soup.triangles[f.triangle as usize].coincides(triangle);
+                let triangle = &self.soup.triangle(hit.id);
+                let known = |f: &&mut Face| self.soup.triangle(f.triangle).coincides(triangle);
                 match faces.iter_mut().find(known) {
                     Some(face) => face.probes |= 1 << i,
-                    None => faces.push(Face { triangle: hit.index, probes: 1 << i }),
+                    None => faces.push(Face { triangle: hit.id, probes: 1 << i }),
                 }
             }
         }
-        let is = |f: &Face, c: &Candidate<'_>| self.soup.triangles[f.triangle as usize].coincides(c.triangle);
-        let missed = |c: &Candidate<'_>| !c.certain && !faces.iter().any(|f| is(f, c));
-        let sliver = |c: &Candidate<'_>| missed(c) && self.may_cover(x, y, c, first_at_centre);
+        let is = |f: &Face, c: &Candidate| self.soup.triangle(f.triangle).coincides(&c.triangle);
+        let missed = |c: &Candidate| !c.certain && !faces.iter().any(|f| is(f, c));
+        let sliver = |c: &Candidate| missed(c) && self.may_cover(x, y, c, first_at_centre);
         let mixed = misses > 0 && !faces.is_empty();
         match faces.len() {
             _ if mixed || candidates.iter().any(sliver) => Sight::Doubtful,
@@ -176,8 +175,8 @@ impl Looker<'_> {
     }
 
     /// Where `ray` meets a candidate, if it does.
-    fn hit(&self, ray: &Ray, candidate: &Candidate<'_>) -> Option<Hit> {
-        let triangle = candidate.triangle;
+    fn hit(&self, ray: &Ray, candidate: &Candidate) -> Option<Hit> {
+        let triangle = &candidate.triangle;
         let steepness = triangle.normal.dot(ray.direction);
         let front = steepness < 0.0 || triangle.double_sided && steepness != 0.0;
         if !front || !cone::contains(&triangle.v, &candidate.normals, self.lens.aim(ray)) {
@@ -187,11 +186,11 @@ impl Looker<'_> {
         let tolerance = self.tolerance(triangle, ray, depth);
         let [near, far] = self.lens.depths;
         let visible = depth + tolerance >= near && depth - tolerance <= far;
-        visible.then_some(Hit { index: candidate.index, range: [depth - tolerance, depth + tolerance] })
+        visible.then_some(Hit { id: candidate.id, range: [depth - tolerance, depth + tolerance] })
     }
 
     /// Whether a rasteriser that snaps vertices may draw a triangle, which no probe has met, at the pixel's centre.
-    fn may_cover(&self, x: f64, y: f64, candidate: &Candidate<'_>, first: f64) -> bool {
+    fn may_cover(&self, x: f64, y: f64, candidate: &Candidate, first: f64) -> bool {
         let aim = self.lens.aim(&self.lens.ray(x, y));
         let ellipse = self.lens.per_pixel().map(|axis| axis * SNAP);
         let slack = Slack { ellipse, line: DVec3::ZERO, radius: 0.0 };

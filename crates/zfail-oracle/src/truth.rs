@@ -70,7 +70,7 @@ pub(crate) fn judge(looker: &Looker<'_>, shader: &Shader<'_>, x: f64, y: f64) ->
         Sight::Doubtful => return Pixel::doubtful(Doubt::Surface),
         Sight::Faces(faces) => faces,
     };
-    let masked = faces.iter().any(|f| looker.soup.triangles[f.triangle as usize].masked);
+    let masked = faces.iter().any(|f| looker.soup.triangle(f.triangle).masked);
     let shades: Vec<_> = faces.iter().map(|&face| shader.shade(x, y, face)).collect();
     let centre = faces.iter().position(|f| f.probes & 1 == 1).unwrap_or(0);
     let nominal = shades[centre];

@@ -1,11 +1,10 @@
 //! The proof that volumes are closed: their directed edges cancel, in exact integer arithmetic.
 //!
-//! In: a volume's index lists, or a scene with its topologies and a light. Out: how many edges do not cancel, which is 0
+//! In: a volume's index lists, or a topology with weights. Out: how many edges do not cancel, which is 0
 //! unless there is a bug. No position is looked at, so no rounding can make an open volume pass or a closed one fail; what
 //! is proved holds on every device that places the same vertex in the same place. Closedness is what makes the count of
 //! z-fail the same along every ray (E&K 2002, section 2.2.3; McGuire et al. 2003, section 4).
 
-use crate::casting;
 use crate::scene::Scene;
 use crate::topology::{NONE, Topology, TopologyError};
 use crate::volume::{self, Volume};
@@ -67,29 +66,6 @@ pub fn topologies(scene: &Scene) -> Result<Vec<Option<Topology>>, TopologyError>
     (0..scene.meshes.len()).map(|mesh| casts(mesh).then(|| Topology::of(scene, mesh)).transpose()).collect()
 }
 
-/// Examines the volumes of all casters of light number `light`, given the scene's [`topologies`].
-///
-/// # Panics
-/// If there is no such light, or the topologies are those of another scene.
-#[must_use]
-pub fn of_light(scene: &Scene, topologies: &[Option<Topology>], light: usize) -> Closure {
-    let light = &scene.lights[light];
-    let (mut castings, mut weights, mut sum) = (Vec::new(), Vec::new(), Closure::default());
-    for (i, instance) in scene.instances.iter().enumerate() {
-        let Some(topology) = topologies[instance.mesh].as_ref().filter(|_| instance.casts_shadow) else { continue };
-        let placement = &instance.world_from_object;
-        let found = casting::object_light(&light.kind, &placement.matrix3.inverse(), placement.translation);
-        let Some(object_light) = found.filter(|_| !light.excluded.contains(&i)) else { continue };
-        let converging = object_light.w == 0.0;
-        casting::castings(topology, object_light, &mut castings);
-        casting::weights(topology, &castings, object_light, &mut weights);
-        sum += of_weights(topology, &weights, converging);
-        random_weights(topology, i as u64, &mut weights);
-        sum += of_weights(topology, &weights, converging);
-    }
-    sum
-}
-
 /// Examines the volume of weights `c`, each from -1 to 1, with extruded triangles as its dark cap and, where there is such, with a fan.
 #[must_use]
 pub fn of_weights(topology: &Topology, c: &[i8], converging: bool) -> Closure {
@@ -118,6 +94,14 @@ pub fn of_weights(topology: &Topology, c: &[i8], converging: bool) -> Closure {
         examine(&indices, &Volume { sides: volume.sides, dark_cap, light_cap, light_cap_reversed });
     }
     sum
+}
+
+/// Examines the volume of random weights, the same ones for the same `seed`.
+#[must_use]
+pub fn of_random_weights(topology: &Topology, seed: u64, converging: bool) -> Closure {
+    let mut weights = Vec::new();
+    random_weights(topology, seed, &mut weights);
+    of_weights(topology, &weights, converging)
 }
 
 /// Weights from -1 to 1 for all triangles that cast at all: no light would choose them, and yet they close.

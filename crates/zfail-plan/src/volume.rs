@@ -95,17 +95,20 @@ pub const fn side_len(converging: bool) -> usize {
 
 /// Appends a side for every silhouette edge of weights `c`, as many as its multiplicity.
 pub fn sides(topology: &Topology, c: &[i8], converging: bool, indices: &mut Vec<u32>) {
-    topology.boundary(c, |[lo, hi], m| {
-        // The cap runs along the edge one way, the side has to run the other way.
-        let (a, b) = if m > 0 { (lo, hi) } else { (hi, lo) };
-        for _ in 0..m.unsigned_abs() {
-            if converging {
-                indices.extend([near(b), near(a), far(0)]);
-            } else {
-                indices.extend([near(b), near(a), far(a), near(b), far(a), far(b)]);
-            }
+    topology.boundary(c, |edge, m| side(edge, m, converging, indices));
+}
+
+/// Appends the sides of one edge of multiplicity `m` ([`Topology::boundary`]).
+pub(crate) fn side([lo, hi]: [u32; 2], m: i32, converging: bool, indices: &mut Vec<u32>) {
+    // The cap runs along the edge one way, the side has to run the other way.
+    let (a, b) = if m > 0 { (lo, hi) } else { (hi, lo) };
+    for _ in 0..m.unsigned_abs() {
+        if converging {
+            indices.extend([near(b), near(a), far(0)]);
+        } else {
+            indices.extend([near(b), near(a), far(a), near(b), far(a), far(b)]);
         }
-    });
+    }
 }
 
 /// Appends the casting triangles extruded to infinity: the dark cap that closes any volume.

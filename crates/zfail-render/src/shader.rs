@@ -116,8 +116,14 @@ mod tests {
     use naga::valid::{Capabilities, ValidationFlags, Validator};
 
     fn programs() -> Vec<Program> {
-        [&[DEPTH, CUTOUT, OPEN_SKY, VERDICT, DESCRIBE, MASK, OWN_SHADOW][..], FORWARD.as_flattened(), &GROUND, &METER, &DEVELOP]
-            .concat()
+        [
+            &[DEPTH, CUTOUT, OPEN_SKY, VERDICT, DESCRIBE, MASK, OWN_SHADOW][..],
+            FORWARD.as_flattened(),
+            &GROUND,
+            &METER,
+            &DEVELOP,
+        ]
+        .concat()
     }
 
     fn validate(source: &str) -> Result<naga::Module, String> {

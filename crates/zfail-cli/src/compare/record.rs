@@ -114,7 +114,7 @@ impl Record {
             shadow_map: ShadowMapRecord { resolution, bias, slope_bias, pcf },
             finite: FiniteRecord { far, extrusion },
             exposure,
-            verdicts: lights.iter().map(|light| light.checked + light.background).sum(),
+            verdicts: lights.iter().map(|light| light.checked + light.out_of_reach + light.background).sum(),
             lights,
             methods: entries.iter().map(MethodRecord::new).collect(),
         })

@@ -47,6 +47,8 @@ fn still(args: &args::Render) -> Result<(), Error> {
     let view = camera.view(args.size.0, &scene.bounds());
     let lights = input::lights(&scene, &args.lights)?;
     let settings = settings(args, &lights);
+    let effort = input::effort(&scene, &lights).filter(|_| settings.shadows);
+    console::notices(effort.as_slice(), args.verbosity.quiet);
 
     let progress = console::progress(4, args.verbosity.quiet || args.aovs.is_empty());
     let gpu = input::gpu(&args.device)?;

@@ -44,7 +44,8 @@ pub fn run(args: &args::Render, numbers: Range<u32>) -> Result<(), Error> {
     let lights = input::lights(&animated.scene, &args.lights)?;
     let mut settings = settings(args, &lights);
     let stillness = stillness(&animated, animation, args.sequence.fps, &numbers);
-    let notices: Vec<String> = animated.scene.notices.iter().cloned().chain(stillness).collect();
+    let effort = input::effort(&animated.scene, &lights).filter(|_| settings.shadows);
+    let notices: Vec<String> = animated.scene.notices.iter().cloned().chain(stillness).chain(effort).collect();
     console::notices(&notices, args.verbosity.quiet);
 
     let gpu = input::gpu(&args.device)?;

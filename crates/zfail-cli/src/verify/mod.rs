@@ -1,11 +1,16 @@
 //! `zfail verify`: the picture of a scene against ray-cast truth, on this machine's adapter and driver.
 //!
 //! Data flow: `variants` (ways to draw the shadows) -> masks and counts -> `report` (what is wrong with them, judged by
-//! [`zfail_oracle`]) -> `suspect` (whose fault that is) -> `text` or JSON, and `pictures`.
+//! [`zfail_oracle`]) -> `proof` (whether that is enough) -> `closeup` (where else to look), and so on until it is ->
+//! `suspect` (whose fault a wrong pixel is) -> `text` or JSON, and `pictures`.
 //!
 //! Beside the picture stands a proof that needs none: every volume is closed ([`zfail_plan::closure`]).
 
+mod closeup;
+mod closure;
+mod examined;
 mod pictures;
+mod proof;
 mod report;
 mod suspect;
 mod text;
@@ -14,16 +19,19 @@ mod variants;
 use crate::args::{Device, Subject, Verbosity};
 use crate::console;
 use crate::error::Error;
-use crate::input::{self, Shot};
+use crate::input;
 use crate::render;
-use report::{LightReport, Report};
+use closeup::Scout;
+use examined::{Examined, Judge, draw};
+use proof::Proof;
+use report::{Closeup, Report};
 use std::path::PathBuf;
-use variants::Variant;
-use zfail_oracle::{CastTable, Oracle, Truth};
-use zfail_plan::casting;
-use zfail_plan::closure::{self, Closure};
-use zfail_plan::topology::Topology;
-use zfail_render::{AovKind, Aovs, Gpu, RenderError, Renderer};
+use zfail_oracle::Oracle;
+use zfail_plan::closure::topologies;
+use zfail_render::{Gpu, Renderer};
+
+/// Views beside the one that is asked for.
+const CLOSEUPS: usize = 48;
 
 /// `zfail verify`
 #[derive(clap::Args, Debug)]
@@ -42,70 +50,84 @@ pub struct Args {
     /// It must be new or empty. Without it, the pictures of a mismatch go into a new folder among the temporary files.
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
+    /// Succeed also where nothing is wrong but too little is proved: where hardly anything is certainly lit and certainly in
+    /// shadow.
+    #[arg(long)]
+    allow_little_proof: bool,
+    /// Check this picture alone, and no closer views where it proves too little.
+    #[arg(long)]
+    no_closeups: bool,
     #[command(flatten)]
     device: Device,
     #[command(flatten)]
     verbosity: Verbosity,
 }
 
-/// Renders, judges, prints, and fails if anything is wrong.
+/// Renders, judges, looks closer until enough is proved, prints, and fails if anything is wrong.
 ///
 /// # Errors
-/// If the scene or the device fails, or the picture is wrong.
+/// If the scene or the device fails, the picture is wrong, or too little is proved.
 pub fn run(args: &Args) -> Result<(), Error> {
     if let Some(folder) = &args.report {
         pictures::check_folder(folder)?;
     }
     let quiet = args.verbosity.quiet;
-    let shot = input::shot(&args.subject, quiet)?;
+    let mut shot = input::shot(&args.subject, quiet)?;
+    console::notices(input::effort(&shot.scene, &shot.lights).as_slice(), quiet);
     let variants = variants::chosen(&args.techniques);
     let gpu = input::gpu(&args.device)?;
     let progress = console::progress(variants.len() + shot.lights.len(), quiet);
-    progress.set_message("rendering");
     let mut renderer = Renderer::new(&gpu, &shot.scene).map_err(|e| render::failed(&e))?;
-    let mut images = Vec::with_capacity(variants.len());
-    for variant in &variants {
-        images.push(draw(&mut renderer, &shot, variant).map_err(|e| render::failed(&e))?);
-        progress.inc(1);
-    }
-    progress.set_message("casting rays");
-    let topologies = closure::topologies(&shot.scene)
-        .map_err(|e| Error::failed(format!("{}: {}", shot.scene.name, input::chain(&e))))?;
+    let topologies =
+        topologies(&shot.scene).map_err(|e| Error::failed(format!("{}: {}", shot.scene.name, input::chain(&e))))?;
     let oracle = Oracle::new(&shot.scene);
-    let (mut truths, mut lights, mut closed) = (Vec::new(), Vec::new(), Closure::default());
-    for (i, &light) in shot.lights.iter().enumerate() {
-        let truth = truth(&oracle, &shot, &topologies, light);
-        lights.push(LightReport::new(&shot.scene, light, &truth, &variants, &images, i)?);
-        truths.push(truth);
-        closed += closure::of_light(&shot.scene, &topologies, light);
-        progress.inc(1);
+    let judge = Judge { oracle: &oracle, topologies: &topologies, progress: &progress };
+    judge.foresee(&shot, quiet)?;
+
+    let mut proof = Proof::new(&shot.scene, &shot.lights);
+    let mut closeups = Vec::new();
+    let first = judge.examine(&mut renderer, &shot, &variants)?;
+    proof.add(&first.lights);
+    // Of the view that is wrong.
+    let mut wrong = None;
+    let (scene, view) = (shot.scene.clone(), shot.view);
+    let mut scout = Scout::new(&oracle, &scene, &view);
+    while first.passes() && !args.no_closeups && closeups.len() < CLOSEUPS {
+        progress.set_message("looking closer");
+        let Some(view) = proof.lacking().iter().find_map(|&light| scout.next(proof.of(light)?)) else { break };
+        (shot.view, shot.lights) = (view, proof.lacking());
+        progress.inc_length((variants.len() + shot.lights.len()) as u64);
+        let closer = judge.examine(&mut renderer, &shot, &variants)?;
+        proof.add(&closer.lights);
+        let passes = closer.passes();
+        closeups.push(Closeup::new(&view, closer.lights.clone()));
+        if !passes {
+            wrong = Some(closer);
+            break;
+        }
     }
+    proof.conclude();
+    progress.set_message("closing volumes");
+    let closed = closure::of(&scene, &topologies, first.shone());
     progress.finish_and_clear();
 
-    let mut report = Report::new(args.subject.scene.scene.clone(), args.subject.size.0, &gpu, closed, lights);
+    let Examined { lights, truths, images } = first;
+    let shown = wrong.unwrap_or_else(|| Examined { lights: lights.clone(), truths, images });
+    let named = args.subject.scene.scene.clone();
+    let mut report = Report::new(named, args.subject.size.0, &gpu, closed, lights, closeups, proof);
     if !report.passed {
-        report.suspect = Some(suspect::find(&shot, &gpu, &mut renderer, &truths, &report));
+        report.suspect = Some(suspect::find(&shot, &gpu, &mut renderer, &shown.truths, &report));
     }
-    let folder = pictures::write(args.report.as_deref(), &report, &shot, &truths, &variants, &images)?;
+    let folder = pictures::write(args.report.as_deref(), &report, &shot, &shown, &variants)?;
     console::print(&if args.json { console::json(&report)? } else { text::text(&report) })?;
     match report.complaint() {
-        None => Ok(()),
         Some(complaint) => {
             let place = folder.map(|folder| format!("; the pictures are in '{}'", folder.display()));
             Err(Error::failed(complaint + &place.unwrap_or_default()))
         }
+        None if report.proof.enough || args.allow_little_proof => Ok(()),
+        None => Err(Error::failed(report.proof.sentence() + "; --allow-little-proof takes that for a pass")),
     }
-}
-
-/// Masks and counts of the lights that shine.
-fn draw(renderer: &mut Renderer<'_>, shot: &Shot, variant: &Variant) -> Result<Aovs, RenderError> {
-    renderer.aovs(&shot.view, &variant.settings(&shot.lights), &[AovKind::Shadow, AovKind::Stencil])
-}
-
-fn truth(oracle: &Oracle, shot: &Shot, topologies: &[Option<Topology>], light: usize) -> Truth {
-    let castings = casting::of_scene(&shot.scene, topologies, light);
-    let casts = CastTable::from_fn(&shot.scene, |instance, triangle| castings[instance][triangle].into());
-    oracle.judge(&shot.view, &shot.scene.lights[light], &casts)
 }
 
 /// A device of its own for a second opinion.

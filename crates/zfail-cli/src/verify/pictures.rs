@@ -4,6 +4,7 @@
 //! ones could not); per mismatch `light-N-TECHNIQUE-rendered.png` is the mask that was drawn and
 //! `light-N-TECHNIQUE-wrong.png` marks what is wrong with it: red is lit and should not be, green is dark and should not be.
 
+use super::examined::Examined;
 use super::report::Report;
 use super::variants::Variant;
 use crate::console;
@@ -14,7 +15,6 @@ use crate::output::{self, Outputs};
 use std::fs;
 use std::path::{Path, PathBuf};
 use zfail_oracle::Truth;
-use zfail_render::Aovs;
 
 /// Whether a report may go into `folder`.
 ///
@@ -30,7 +30,7 @@ pub fn check_folder(folder: &Path) -> Result<(), Error> {
     Err(Error::failed(format!("the folder '{folder}' is not empty; a report never overwrites, so name a new one")))
 }
 
-/// Writes report and pictures into `folder`, or if something is wrong into a new one. Says where.
+/// Writes report and pictures, of the view that was asked for or of the one that is wrong, into `folder`, or if something is wrong into a new one. Says where.
 ///
 /// # Errors
 /// If they cannot be written.
@@ -38,25 +38,24 @@ pub fn write(
     folder: Option<&Path>,
     report: &Report,
     shot: &Shot,
-    truths: &[Truth],
+    shown: &Examined,
     variants: &[Variant],
-    images: &[Aovs],
 ) -> Result<Option<PathBuf>, Error> {
     let folder = match folder {
         Some(folder) => folder.to_owned(),
         None if report.passed => return Ok(None),
         None => temporary()?,
     };
-    let size = shot.view.size;
+    let size = if report.passed { report.size } else { shot.view.size };
     let mut outputs = Outputs::default();
     outputs.add(folder.join("report.json"), console::json(report)?.into_bytes());
-    for (i, (light, truth)) in report.lights.iter().zip(truths).enumerate() {
+    for (i, (light, truth)) in shown.lights.iter().zip(&shown.truths).enumerate() {
         let mut add =
             |name: &str, file: Vec<u8>| outputs.add(folder.join(format!("light-{}-{name}", light.judged.light)), file);
         let expected = truth.mask();
         add("expected.png", encode::png_grey(size, &expected)?);
         add("checked.png", difference(truth, &expected)?);
-        for ((row, variant), images) in light.techniques.iter().zip(variants).zip(images) {
+        for ((row, variant), images) in light.techniques.iter().zip(variants).zip(&shown.images) {
             if let Some(mask) = images.shadow.get(i).filter(|_| !row.passes()) {
                 add(&format!("{}-rendered.png", variant.name), encode::png_grey(size, mask)?);
                 add(&format!("{}-wrong.png", variant.name), difference(truth, mask)?);

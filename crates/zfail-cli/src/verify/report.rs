@@ -3,6 +3,8 @@
 //! In: the truth of each light, and the masks and counts that each variant rendered. Out: numbers and a verdict. Nothing
 //! here renders, so that tests can judge masks that no driver would draw.
 
+use super::closure::Closed;
+use super::proof::Proof;
 use super::variants::Variant;
 use crate::error::Error;
 use crate::judged::JudgedLight;
@@ -10,6 +12,7 @@ use serde::Serialize;
 use zfail_oracle::{SizeMismatch, Truth, Wrong};
 use zfail_plan::closure::Closure;
 use zfail_plan::scene::Scene;
+use zfail_plan::view::View;
 use zfail_render::{Aovs, Gpu};
 
 /// Wrong pixels that a report lists.
@@ -25,7 +28,13 @@ pub struct Report {
     pub driver: String,
     pub depth_format: String,
     pub closure: ClosureReport,
+    /// In the picture that was asked for.
     pub lights: Vec<LightReport>,
+    /// Further views, of the lights of which more had to be seen.
+    pub closeups: Vec<Closeup>,
+    /// How much all of it proves.
+    pub proof: Proof,
+    /// Whether nothing is wrong.
     pub passed: bool,
     /// Whose fault it seems to be, if it has not passed.
     pub suspect: Option<Opinion>,
@@ -37,10 +46,30 @@ pub struct ClosureReport {
     pub volumes: usize,
     pub triangles: u64,
     pub open_edges: u64,
+    /// Pairs of caster and light that were not examined, because there are too many.
+    pub left_out: usize,
+}
+
+/// A view from somewhere else.
+#[derive(Debug, Serialize)]
+pub struct Closeup {
+    /// World space.
+    pub eye: [f64; 3],
+    /// The way that it looks.
+    pub towards: [f64; 3],
+    pub lights: Vec<LightReport>,
+}
+
+impl Closeup {
+    /// What was found in `view`.
+    pub fn new(view: &View, lights: Vec<LightReport>) -> Self {
+        let axes = view.world_from_view;
+        Self { eye: axes.translation.to_array(), towards: (-axes.matrix3.z_axis).to_array(), lights }
+    }
 }
 
 /// One light.
-#[derive(Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct LightReport {
     #[serde(flatten)]
     pub judged: JudgedLight,
@@ -48,7 +77,7 @@ pub struct LightReport {
 }
 
 /// One light, drawn in one way.
-#[derive(Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TechniqueReport {
     pub technique: &'static str,
     /// Verdicts, lit or not, that are wrong.
@@ -86,22 +115,33 @@ pub enum Suspect {
 }
 
 impl Report {
-    pub fn new(scene: String, size: [u32; 2], gpu: &Gpu, closed: Closure, lights: Vec<LightReport>) -> Self {
+    pub fn new(
+        scene: String,
+        size: [u32; 2],
+        gpu: &Gpu,
+        closed: Closed,
+        lights: Vec<LightReport>,
+        closeups: Vec<Closeup>,
+        proof: Proof,
+    ) -> Self {
         let driver = [gpu.info.driver.as_str(), gpu.info.driver_info.as_str()].join(" ").trim().to_owned();
-        let passed = closed.open_edges == 0 && lights.iter().flat_map(|l| &l.techniques).all(TechniqueReport::passes);
-        let Closure { volumes, triangles, open_edges } = closed;
-        Self {
+        let Closed { closure: Closure { volumes, triangles, open_edges }, left_out } = closed;
+        let mut report = Self {
             scene,
             size,
             adapter: gpu.info.name.clone(),
             backend: gpu.info.backend.to_string(),
             driver,
             depth_format: format!("{:?}", gpu.depth_stencil),
-            closure: ClosureReport { volumes, triangles, open_edges },
+            closure: ClosureReport { volumes, triangles, open_edges, left_out },
             lights,
-            passed,
+            closeups,
+            proof,
+            passed: false,
             suspect: None,
-        }
+        };
+        report.passed = open_edges == 0 && report.rows().all(TechniqueReport::passes);
+        report
     }
 
     /// Wrong verdicts of all lights and techniques together.
@@ -141,7 +181,8 @@ impl Report {
     }
 
     fn rows(&self) -> impl Iterator<Item = &TechniqueReport> {
-        self.lights.iter().flat_map(|light| &light.techniques)
+        let closer = self.closeups.iter().flat_map(|closeup| &closeup.lights);
+        self.lights.iter().chain(closer).flat_map(|light| &light.techniques)
     }
 }
 

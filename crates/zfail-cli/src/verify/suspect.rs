@@ -102,8 +102,9 @@ fn judge(evidence: &Evidence) -> Opinion {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::verify::closure::Closed;
+    use crate::verify::proof::Proof;
     use crate::verify::report::LightReport;
-    use zfail_plan::closure::Closure;
 
     #[test]
     fn what_another_adapter_draws_decides() {
@@ -136,7 +137,8 @@ mod tests {
         let view = scene.cameras[0].view([48, 27], &scene.bounds());
         let shot = Shot { scene, camera: String::new(), view, lights: vec![0] };
         let topologies = zfail_plan::closure::topologies(&shot.scene).unwrap();
-        let right = super::super::truth(&zfail_oracle::Oracle::new(&shot.scene), &shot, &topologies, 0);
+        let right =
+            super::super::examined::truth(&zfail_oracle::Oracle::new(&shot.scene), &shot, &shot.view, &topologies, 0);
         let mut inverted = right.clone();
         inverted.pixels.iter_mut().for_each(|pixel| pixel.lit = !pixel.lit);
 
@@ -144,7 +146,8 @@ mod tests {
         let variants = variants::chosen(&["auto".to_owned()]);
         let images = [draw(&mut renderer, &shot, &variants[0]).unwrap()];
         let light = |truth| LightReport::new(&shot.scene, 0, truth, &variants, &images, 0).unwrap();
-        let report = Report::new(String::new(), [48, 27], &gpu, Closure::default(), vec![light(&inverted)]);
+        let (proof, lights) = (Proof::new(&shot.scene, &[0]), vec![light(&inverted)]);
+        let report = Report::new(String::new(), [48, 27], &gpu, Closed::default(), lights, Vec::new(), proof);
         assert_eq!((report.passed, report.wrong_techniques()), (false, vec!["auto"]));
 
         let mut points_to = |truth: Truth| find(&shot, &gpu, &mut renderer, &[truth], &report).points_to;

@@ -1,6 +1,6 @@
 //! The report as a person reads it.
 
-use super::report::{LightReport, Report, Suspect};
+use super::report::{Closeup, LightReport, Report, Suspect, TechniqueReport};
 use std::fmt::Write;
 
 /// The whole report.
@@ -16,14 +16,23 @@ pub fn text(report: &Report) -> String {
     for light in &report.lights {
         text += &of_light(light);
     }
+    for closeup in &report.closeups {
+        text += &of_closeup(closeup);
+    }
     let closed = &report.closure;
+    let left_out = match closed.left_out {
+        0 => String::new(),
+        casters => format!("; {casters} more casters are too many to examine"),
+    };
     let _ = writeln!(
         text,
-        "closure: {} volumes of {} triangles, also under random weights, have {} open edges",
+        "closure: {} volumes of {} triangles, also under random weights, have {} open edges{left_out}",
         closed.volumes, closed.triangles, closed.open_edges
     );
     match (&report.suspect, report.complaint()) {
-        (_, None) => text += "pass: 0 wrong pixels\n",
+        (_, None) => {
+            let _ = writeln!(text, "{}", report.proof.sentence());
+        }
         (opinion, Some(complaint)) => {
             let _ = writeln!(text, "MISMATCH: {complaint}");
             if let Some(opinion) = opinion {
@@ -39,14 +48,33 @@ pub fn text(report: &Report) -> String {
     text
 }
 
+/// A line, and what is wrong.
+fn of_closeup(closeup: &Closeup) -> String {
+    let [x, y, z] = closeup.eye;
+    let seen = closeup.lights.iter().map(|light| {
+        let judged = &light.judged;
+        format!("light {} {} lit, {} in shadow", judged.light, judged.lit, judged.shadowed)
+    });
+    let seen: Vec<String> = seen.collect();
+    let mut text = format!("closer, from ({x:.4} {y:.4} {z:.4}): {}\n", seen.join("; "));
+    for light in closeup.lights.iter().filter(|light| !light.techniques.iter().all(TechniqueReport::passes)) {
+        text += &of_light(light);
+    }
+    text
+}
+
 fn of_light(light: &LightReport) -> String {
     let (mut text, judged) = (String::new(), &light.judged);
     let excluded: usize = judged.excluded.values().sum();
     let reasons: Vec<String> = judged.excluded.iter().map(|(reason, pixels)| format!("{reason} {pixels}")).collect();
     let reasons = if reasons.is_empty() { String::new() } else { format!(" ({})", reasons.join(", ")) };
+    let beyond = match judged.out_of_reach {
+        0 => String::new(),
+        pixels => format!(", {pixels} out of its reach"),
+    };
     let _ = writeln!(
         text,
-        "light {} '{}', {}: {} pixels checked ({} lit, {} in shadow), {excluded} left out{reasons}",
+        "light {} '{}', {}: {} pixels checked ({} lit, {} in shadow), {excluded} left out{reasons}{beyond}",
         judged.light, judged.name, judged.kind, judged.checked, judged.lit, judged.shadowed
     );
     if let Some(why) = &judged.proves_little {
@@ -70,7 +98,8 @@ fn of_light(light: &LightReport) -> String {
 mod tests {
     use super::*;
     use crate::judged::JudgedLight;
-    use crate::verify::report::{ClosureReport, Example, Opinion, TechniqueReport};
+    use crate::verify::proof::Proof;
+    use crate::verify::report::{ClosureReport, Example, Opinion};
 
     fn report(wrong_pixels: usize) -> Report {
         let examples = vec![Example { x: 7, y: 9, expected: 255, found: 0 }];
@@ -82,21 +111,25 @@ mod tests {
             backend: "vulkan".to_owned(),
             driver: "1".to_owned(),
             depth_format: "D".to_owned(),
-            closure: ClosureReport { volumes: 3, triangles: 12, open_edges: 0 },
+            closure: ClosureReport { volumes: 3, triangles: 12, open_edges: 0, left_out: 0 },
             lights: vec![LightReport {
                 judged: JudgedLight {
                     light: 2,
                     name: "sun".to_owned(),
                     kind: "directional",
                     checked: 5,
+                    out_of_reach: 0,
                     background: 0,
                     lit: 3,
                     shadowed: 2,
                     excluded: [("boundary", 1)].into(),
+                    leaves_out: None,
                     proves_little: Some("it is small".to_owned()),
                 },
                 techniques,
             }],
+            closeups: Vec::new(),
+            proof: Proof { enough: false, views: 1, pixels: 5, lights: Vec::new() },
             passed: wrong_pixels == 0,
             suspect: Some(Opinion { points_to: Suspect::Driver, because: "B is right".to_owned() }),
         }
@@ -113,8 +146,9 @@ mod tests {
         ] {
             assert!(said.contains(words), "{said}");
         }
-        assert!(!said.contains("pass"));
+        assert!(!said.contains("proved"));
         let passed = text(&report(0));
-        assert!(passed.ends_with("pass: 0 wrong pixels\n") && !passed.contains("MISMATCH"), "{passed}");
+        let last = "too little is proved: 0 wrong among 5 certain pixels of 1 view, but no light reaches anything that was seen\n";
+        assert!(passed.ends_with(last) && !passed.contains("MISMATCH"), "{passed}");
     }
 }

@@ -73,17 +73,18 @@ fn azimuth(direction: DVec3) -> f64 {
 /// What one caster adds to every column.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Crossings {
-    columns: Vec<u32>,
-    /// Layers at both poles together.
-    poles: u32,
+    /// By how much each column has more than the one before.
+    steps: Vec<i32>,
+    /// In every column, and layers at both poles together.
+    everywhere: u32,
 }
 
 impl Crossings {
     /// No caster, in so many columns.
     pub fn clear(&mut self, columns: usize) {
-        self.columns.clear();
-        self.columns.resize(columns, 0);
-        self.poles = 0;
+        self.steps.clear();
+        self.steps.resize(columns, 0);
+        self.everywhere = 0;
     }
 
     /// Adds the crossings of one caster's silhouette for `light` in its object space. `silhouette` yields each edge as
@@ -97,7 +98,7 @@ impl Crossings {
         light: ObjectLight,
         lines: Lines,
     ) {
-        let columns = self.columns.len() as f64;
+        let columns = self.steps.len() as f64;
         let origin = light.truncate().as_dvec3();
         let matrix = world_from_object.matrix3;
         for edge in silhouette {
@@ -127,7 +128,7 @@ impl Crossings {
             for pole in [POLE, -POLE] {
                 let way = object_from_world * pole;
                 if crosses(&topology.bounds(), origin, way) {
-                    self.poles += near_count::layers(topology, weights, light, way.extend(0.0));
+                    self.everywhere += near_count::layers(topology, weights, light, way.extend(0.0));
                 }
             }
         }
@@ -135,27 +136,37 @@ impl Crossings {
 
     fn add(&mut self, from: f64, to: f64) {
         let (first, last) = (from.floor(), to.floor());
-        let columns = self.columns.len() as i64;
+        let columns = self.steps.len();
         if last - first < columns as f64 - 1.0 {
-            let first = first as i64;
-            for i in first..=last as i64 {
-                self.columns[i.rem_euclid(columns) as usize] += 1;
+            let start = (first as i64).rem_euclid(columns as i64) as usize;
+            let end = start + (last - first) as usize + 1;
+            self.steps[start] += 1;
+            if end < columns {
+                self.steps[end] -= 1;
+            } else if end > columns {
+                self.steps[0] += 1;
+                self.steps[end - columns] -= 1;
             }
         } else {
-            self.columns.iter_mut().for_each(|column| *column += 1);
+            self.everywhere += 1;
         }
     }
 
     /// Adds those of another caster.
     pub fn merge(&mut self, other: &Self) {
-        self.poles += other.poles;
-        self.columns.iter_mut().zip(&other.columns).for_each(|(sum, n)| *sum += n);
+        self.everywhere += other.everywhere;
+        self.steps.iter_mut().zip(&other.steps).for_each(|(sum, n)| *sum += n);
     }
 
     /// The most layers that any ray can cross.
     pub fn bound(&self) -> usize {
-        let most = self.columns.iter().copied().max().unwrap_or(0);
-        (most as usize + self.poles as usize) / 2
+        let mut column = 0;
+        let columns = self.steps.iter().map(|step| {
+            column += step;
+            column
+        });
+        let most = columns.max().unwrap_or(0);
+        (most.unsigned_abs() as usize + self.everywhere as usize) / 2
     }
 }
 

@@ -21,6 +21,7 @@ mod pyramid;
 mod reach;
 mod receivers;
 mod sheets;
+mod spread;
 mod stages;
 mod stats;
 mod store;

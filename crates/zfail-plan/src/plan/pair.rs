@@ -11,10 +11,12 @@ use super::store::Place;
 use crate::casting::{self, Casting, ObjectLight};
 use crate::scene::LightKind;
 use crate::scissor::Rectangle;
+use crate::stack::{self, Outline};
 use crate::topology::{Cover, NONE, Part, Topology};
 use crate::view::{Projection, View};
 use crate::volume::{self, Volume};
 use glam::DAffine3;
+use std::collections::BTreeMap;
 
 /// What becomes of a pair this frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -173,29 +175,68 @@ impl Pair {
         if self.is_built() {
             return;
         }
-        let batches = self.batch_of.iter().copied().max().unwrap_or(0);
-        let mut used = 0;
-        for batch in 0..=batches {
-            self.mask(batch);
-            if self.masked.iter().all(|&c| c == 0) {
-                continue;
+        let converging = is_converging(self.light, self.finite);
+        self.live = 0;
+        if self.batch_of.is_empty() {
+            if self.casting > 0 {
+                let indices = self.open_piece(0);
+                let mut sides = std::mem::take(indices);
+                volume::sides(topology, &self.weights, converging, &mut sides);
+                self.close_piece(sides);
             }
-            if used == self.pieces.len() {
-                self.pieces.push(Piece::default());
+        } else {
+            // Of a caster among many, few; of a caster alone, perhaps hundreds, so that edges are gone through once.
+            let mut silhouettes = BTreeMap::<u16, Vec<([u32; 2], i32)>>::new();
+            for (t, &batch) in self.batch_of.iter().enumerate() {
+                if self.weights[t] != 0 {
+                    silhouettes.entry(batch).or_default();
+                }
             }
-            let piece = &mut self.pieces[used];
-            (piece.batch, piece.fresh) = (batch, true);
-            piece.have = Parts { sides: true, ..Parts::default() };
-            piece.indices.clear();
-            volume::sides(topology, &self.masked, is_converging(self.light, self.finite), &mut piece.indices);
-            let end = piece.indices.len() as u32;
-            piece.volume =
-                Volume { sides: 0..end, dark_cap: end..end, light_cap: end..end, light_cap_reversed: end..end };
-            piece.exposed = [end; 2];
-            used += 1;
+            let mut sums: Vec<(u16, i32)> = Vec::new();
+            for (edge, incident) in topology.incidence() {
+                sums.clear();
+                for (t, orientation) in incident.iter().filter(|&(t, _)| self.weights[t] != 0) {
+                    let (batch, times) = (self.batch_of[t], i32::from(self.weights[t]) * orientation);
+                    match sums.iter_mut().find(|sum| sum.0 == batch) {
+                        Some(sum) => sum.1 += times,
+                        None => sums.push((batch, times)),
+                    }
+                }
+                for &(batch, times) in sums.iter().filter(|sum| sum.1 != 0) {
+                    silhouettes.entry(batch).or_default().push((edge, times));
+                }
+            }
+            for (batch, silhouette) in silhouettes {
+                let mut sides = std::mem::take(self.open_piece(batch));
+                for (edge, times) in silhouette {
+                    volume::side(edge, times, converging, &mut sides);
+                }
+                self.close_piece(sides);
+            }
         }
-        self.live = used;
         self.built = true;
+    }
+
+    /// Begins the next piece: its index list, empty.
+    fn open_piece(&mut self, batch: u16) -> &mut Vec<u32> {
+        if self.live == self.pieces.len() {
+            self.pieces.push(Piece::default());
+        }
+        let piece = &mut self.pieces[self.live];
+        (piece.batch, piece.fresh) = (batch, true);
+        piece.have = Parts { sides: true, ..Parts::default() };
+        piece.indices.clear();
+        &mut piece.indices
+    }
+
+    /// Ends it with its sides.
+    fn close_piece(&mut self, sides: Vec<u32>) {
+        let piece = &mut self.pieces[self.live];
+        let end = sides.len() as u32;
+        piece.indices = sides;
+        piece.volume = Volume { sides: 0..end, dark_cap: end..end, light_cap: end..end, light_cap_reversed: end..end };
+        piece.exposed = [end; 2];
+        self.live += 1;
     }
 
     /// The closed volumes that together are the pair's.
@@ -350,12 +391,28 @@ impl Pair {
         lines: Lines,
         crossings: &mut Crossings,
     ) {
+        crossings.count(topology, &self.weights, self.silhouette(), world_from_object, self.light, lines);
+    }
+
+    /// Adds the silhouette of the whole.
+    pub fn outline(&self, topology: &Topology, caster: &Placed, outline: &mut Outline) {
+        let (weights, world_from_object) = (&self.weights, &caster.world_from_object);
+        let caster = stack::Caster { topology, weights, world_from_object, light: self.light };
+        outline.add(&caster, self.silhouette(), 0..weights.len());
+    }
+
+    /// Edges as often as they have sides, along the way of triangles with weight 1.
+    fn silhouette(&self) -> impl Iterator<Item = [u32; 2]> {
         let stride = volume::side_len(is_converging(self.light, self.finite));
-        let silhouette = self.pieces().iter().flat_map(|piece| {
+        self.pieces().iter().flat_map(move |piece| {
             let sides = &piece.indices[..piece.volume.sides.end as usize];
-            sides.chunks_exact(stride).map(|side| [side[0] >> 1, side[1] >> 1])
-        });
-        crossings.count(topology, &self.weights, silhouette, world_from_object, self.light, lines);
+            sides.chunks_exact(stride).map(|side| [side[1] >> 1, side[0] >> 1])
+        })
+    }
+
+    /// Whether everything is in one batch, and its sides are built.
+    pub fn is_united(&self) -> bool {
+        self.built && self.batch_of.is_empty()
     }
 
     /// One more than the last batch in which the pair draws anything.

@@ -123,7 +123,7 @@ impl Planner {
         self.weigh(frame);
         // Where the device takes part, one batch is known to do.
         for (l, pairs) in self.pairs.chunks_mut(casters).enumerate().filter(|&(l, _)| self.layers[l].is_none()) {
-            self.batching[l].divide(frame, l, pairs, placed);
+            self.plan.lights[l].stats.searched = self.batching[l].divide(frame, l, pairs, placed);
         }
         self.in_parallel(frame, |pair, _| !pair.is_built(), |pair, c| pair.build_sides(frame.casters[c].topology));
         for (l, pairs) in self.pairs.chunks_mut(casters).enumerate() {

@@ -67,6 +67,8 @@ pub struct LightStats {
     pub vertices: u32,
     /// Pixels the light may reach: x, y, width, height; all zero where it reaches none.
     pub scissor: Rectangle,
+    /// What the search for batches looked at in this frame ([`crate::stack::Work`]): nothing where few layers are in sight.
+    pub searched: u64,
 }
 
 impl LightStats {

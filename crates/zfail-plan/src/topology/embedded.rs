@@ -1,23 +1,40 @@
 //! Whether a closed surface is embedded: no two of its triangles meet except in the vertices and edges they share.
 //!
 //! Then, by Jordan-Brouwer, a connected closed part separates space into an inside and an outside, and single weights
-//! are exact. The answer is conservative: any contact that is not through shared vertices counts as meeting. All
+//! are exact. The answer is conservative: any contact that is not through shared vertices counts as meeting, and so does what
+//! takes too long to find out, as where tens of thousands of triangles meet in one vertex. All
 //! predicates are exact (Shewchuk 1997, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric
 //! Predicates", by the crate `robust`).
 
 use super::Topology;
 use robust::{Coord, Coord3D, orient2d, orient3d};
+use std::sync::atomic::{AtomicI64, Ordering};
 
 type Point = [f64; 3];
 
 /// Triangles below this many in a node are compared pair by pair.
 const LEAF: usize = 8;
+/// Pairs compared per triangle at most. Ordinary meshes need about a hundred; n triangles around one vertex need n / 2.
+const PAIRS: usize = 512;
 
 /// Whether `triangles` (of one part) meet only in shared vertices and edges.
 pub(super) fn is_embedded(topology: &Topology, triangles: &[u32]) -> bool {
     let mut items: Vec<Item> = triangles.iter().map(|&t| Item::new(topology, t as usize)).collect();
     let tree = Node::build(&mut items);
-    tree.is_free_of_contact(&items)
+    tree.is_free_of_contact(&Pairs { items: &items, left: AtomicI64::new((PAIRS * triangles.len()) as i64) })
+}
+
+/// The triangles, and how many pairs of them may still be compared.
+struct Pairs<'a> {
+    items: &'a [Item],
+    left: AtomicI64,
+}
+
+impl Pairs<'_> {
+    /// Whether so many may be compared.
+    fn take(&self, pairs: usize) -> bool {
+        self.left.fetch_sub(pairs as i64, Ordering::Relaxed) >= pairs as i64
+    }
 }
 
 struct Item {
@@ -78,34 +95,43 @@ impl Node {
         Self { min, max, start, end, children }
     }
 
-    fn is_free_of_contact(&self, items: &[Item]) -> bool {
+    fn is_free_of_contact(&self, pairs: &Pairs<'_>) -> bool {
+        let items = pairs.items;
         match &self.children {
             Some(children) => {
                 let [left, right] = &**children;
-                let (l, r) = rayon::join(|| left.is_free_of_contact(items), || right.is_free_of_contact(items));
-                l && r && left.is_apart_from(right, items)
+                let (l, r) = rayon::join(|| left.is_free_of_contact(pairs), || right.is_free_of_contact(pairs));
+                l && r && left.is_apart_from(right, pairs)
             }
             None => (self.start..self.end).all(|i| (i + 1..self.end).all(|j| !meet(&items[i], &items[j]))),
         }
     }
 
-    fn is_apart_from(&self, other: &Self, items: &[Item]) -> bool {
+    fn is_apart_from(&self, other: &Self, pairs: &Pairs<'_>) -> bool {
+        let items = pairs.items;
         if !overlap(self.min, self.max, other.min, other.max) {
             return true;
         }
         match (&self.children, &other.children) {
             (None, None) => {
-                (self.start..self.end).all(|i| (other.start..other.end).all(|j| !meet(&items[i], &items[j])))
+                pairs.take((self.end - self.start) * (other.end - other.start))
+                    && (self.start..self.end).all(|i| (other.start..other.end).all(|j| !meet(&items[i], &items[j])))
             }
-            (Some(c), None) => c.iter().all(|child| child.is_apart_from(other, items)),
-            (None, Some(c)) => c.iter().all(|child| self.is_apart_from(child, items)),
-            (Some(a), Some(b)) => a.iter().all(|x| b.iter().all(|y| x.is_apart_from(y, items))),
+            (Some(c), None) => c.iter().all(|child| child.is_apart_from(other, pairs)),
+            (None, Some(c)) => c.iter().all(|child| self.is_apart_from(child, pairs)),
+            (Some(a), Some(b)) => a.iter().all(|x| b.iter().all(|y| x.is_apart_from(y, pairs))),
         }
     }
 }
 
 fn overlap(min_a: [f32; 3], max_a: [f32; 3], min_b: [f32; 3], max_b: [f32; 3]) -> bool {
     (0..3).all(|i| min_a[i] <= max_b[i] && min_b[i] <= max_a[i])
+}
+
+/// Whether a segment lies beside the box of a triangle.
+fn is_beside(segment: &[Point; 2], of: &Item) -> bool {
+    let [p, q] = segment;
+    (0..3).any(|i| p[i].max(q[i]) < f64::from(of.min[i]) || p[i].min(q[i]) > f64::from(of.max[i]))
 }
 
 /// Whether two triangles meet anywhere but in their shared vertices or their one shared edge.
@@ -124,6 +150,10 @@ fn meet(a: &Item, b: &Item) -> bool {
             let (va, vb) = (position_of(&shared_a, true), position_of(&shared_b, true));
             let far = |p: &[Point; 3], v: usize| [p[(v + 1) % 3], p[(v + 2) % 3]];
             let (ea, eb) = (far(&a.corners, va), far(&b.corners, vb));
+            // Where they meet beyond the vertex, the far edge of one of them meets the other.
+            if is_beside(&ea, b) && is_beside(&eb, a) {
+                return false;
+            }
             if ea.iter().all(|p| side(&b.corners, p) == 0.0) {
                 return sectors_meet(a.corners[va], ea, eb);
             }
