@@ -7,6 +7,7 @@ use crate::exposure::ExposureMeter;
 use crate::forward_pass::{Attachments, ForwardPass, Shadows, Step};
 use crate::fragment_counter::FragmentCounter;
 use crate::frame::{FrameData, Shading};
+use crate::further_pass::FurtherPass;
 use crate::gpu_data::LightRecord;
 use crate::layouts::Layouts;
 use crate::mask_pass::{Mask, MaskPass};
@@ -40,6 +41,8 @@ pub struct Renderer<'g> {
     verdicts: HashMap<(u32, bool), VerdictPass>,
     /// By sample count.
     darkroom: HashMap<u32, (ExposureMeter, DevelopPass)>,
+    /// By sample count.
+    further: HashMap<u32, FurtherPass>,
     targets: Option<Targets>,
     timer: Timer,
     measured: Option<Measured>,
@@ -82,6 +85,7 @@ impl<'g> Renderer<'g> {
             forward: ForwardPass::default(),
             verdicts: HashMap::new(),
             darkroom: HashMap::new(),
+            further: HashMap::new(),
             targets: None,
             timer: Timer::default(),
             measured: None,
@@ -287,7 +291,7 @@ impl<'g> Renderer<'g> {
         )?;
         let targets = self.targets.as_mut().ok_or_else(no_targets)?;
         // Blended surfaces have a verdict of their own: that on the nearest of them.
-        let layered = spans.shadows && !part.solid && lights.len() <= verdict_pass::LIGHTS;
+        let layered = spans.shadows && !part.solid;
         let shadowed = spans.shadows && part.solid || layered;
         // Drawing everything twice is cheaper than a texture of verdicts unless there is more to draw than to fill.
         let few = scene.draws.solid_triangles() < view.size[0] * view.size[1] / 8;
@@ -296,7 +300,7 @@ impl<'g> Renderer<'g> {
             (true, true) => Shadows::Stencil,
             (true, false) => Shadows::Bits,
         };
-        let step = Step::new(settings, finish == Finish::Forward, &records, shadows, added && part.solid);
+        let step = Step::new(settings, finish == Finish::Forward, &records, shadows, part.further);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let depth_stencil = targets.depth_stencil.clone();
         if shadowed {
@@ -335,6 +339,8 @@ impl<'g> Renderer<'g> {
                 let [r, g, b] = exposed.background.map(|c| c * exposed.exposure);
                 cleared(&targets.ldr_view, tone_map::displayed([r, g, b]))
             }
+            // What is blended over itself has to start from black: under more light, what is there stays as visible.
+            Finish::Darkroom if part.further && layered => cleared(targets.further(gpu), [0.0; 4]),
             Finish::Darkroom if added => continued(&targets.hdr(gpu).samples),
             Finish::Darkroom => {
                 // A negative share to be shown as it is marks what is no surface.
@@ -350,6 +356,11 @@ impl<'g> Renderer<'g> {
             timestamp_writes: timer.pass(spans.forward()).filter(|_| part.solid),
         };
         self.forward.encode(&mut encoder, attachments, &self.frame, scene, step, draws);
+        if part.further && layered {
+            let light = targets.further(gpu).clone();
+            let pass = self.further.entry(samples).or_insert_with(|| FurtherPass::new(gpu, samples));
+            pass.encode(gpu, &mut encoder, &light, &targets.hdr(gpu).samples);
+        }
         gpu.queue.submit([encoder.finish()]);
         Ok(())
     }
@@ -420,22 +431,25 @@ struct Part {
     lights: Range<usize>,
     /// Draws solid surfaces.
     solid: bool,
-    /// Draws blended surfaces, which are lit by all lights at once: they have shadows if one texel holds all verdicts.
+    /// Draws blended surfaces.
     blended: bool,
+    /// Adds lights to surfaces that an earlier part has drawn.
+    further: bool,
 }
 
 /// The parts of a frame in order.
 fn parts(lights: usize, shadows: bool, blends: bool) -> Vec<Part> {
     if !shadows || lights == 0 {
-        return vec![Part { lights: 0..lights, solid: true, blended: blends }];
+        return vec![Part { lights: 0..lights, solid: true, blended: blends, further: false }];
     }
-    let starts = (0..lights).step_by(verdict_pass::LIGHTS);
-    let solid = starts.map(|start| {
-        let lights = start..lights.min(start + verdict_pass::LIGHTS);
-        Part { lights, solid: true, blended: false }
-    });
-    let blended = Part { lights: 0..lights, solid: false, blended: true };
-    solid.chain(blends.then_some(blended)).collect()
+    let surfaces = [true, false].into_iter().filter(|&solid| solid || blends);
+    let groups = |solid| {
+        (0..lights).step_by(verdict_pass::LIGHTS).map(move |start| {
+            let lights = start..lights.min(start + verdict_pass::LIGHTS);
+            Part { lights, solid, blended: !solid, further: start > 0 }
+        })
+    };
+    surfaces.flat_map(groups).collect()
 }
 
 /// Light of a frame, scaled to the range of half floats.
@@ -613,15 +627,15 @@ mod tests {
 
     #[test]
     fn many_lights_are_divided() {
-        let whole = |lights: usize, blended| Part { lights: 0..lights, solid: true, blended };
+        let whole = |lights: usize, blended| Part { lights: 0..lights, solid: true, blended, further: false };
         assert_eq!(parts(50, false, true), [whole(50, true)]);
         assert_eq!(parts(32, true, false), [whole(32, false)]);
         assert_eq!(parts(32, true, true), [whole(32, false), Part { solid: false, ..whole(32, true) }]);
         let divided = parts(50, true, true);
-        assert_eq!(divided.iter().map(|p| p.lights.clone()).collect::<Vec<_>>(), [0..32, 32..50, 0..50]);
+        assert_eq!(divided.iter().map(|p| p.lights.clone()).collect::<Vec<_>>(), [0..32, 32..50, 0..32, 32..50]);
         assert_eq!(
-            divided.iter().map(|p| [p.solid, p.blended]).collect::<Vec<_>>(),
-            [[true, false], [true, false], [false, true]]
+            divided.iter().map(|p| [p.solid, p.blended, p.further]).collect::<Vec<_>>(),
+            [[true, false, false], [true, false, true], [false, true, false], [false, true, true]]
         );
     }
 }

@@ -36,6 +36,10 @@ const DEVELOP: [Program; 2] = [
     program!("develop", "hdr_single", "screen", "tone_map", "develop"),
     program!("develop 4x", "hdr_multi", "screen", "tone_map", "develop"),
 ];
+const FURTHER: [Program; 2] = [
+    program!("further", "hdr_single", "screen", "further_single"),
+    program!("further 4x", "hdr_multi", "screen", "further_multi"),
+];
 
 /// Shading of what `vertices` read; `verdicts` are the samples per pixel of the light verdicts, if there are any.
 pub fn forward(vertices: Vertices, verdicts: Option<u32>) -> Program {
@@ -59,6 +63,10 @@ pub fn develop(samples: u32) -> Program {
     DEVELOP[usize::from(samples > 1)]
 }
 
+pub fn further(samples: u32) -> Program {
+    FURTHER[usize::from(samples > 1)]
+}
+
 impl Program {
     pub fn module(&self, device: &wgpu::Device) -> wgpu::ShaderModule {
         device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -75,7 +83,7 @@ mod tests {
     use naga::valid::{Capabilities, ValidationFlags, Validator};
 
     fn programs() -> Vec<Program> {
-        [&[DEPTH, CUTOUT, VERDICT, DESCRIBE, MASK][..], FORWARD.as_flattened(), &METER, &DEVELOP].concat()
+        [&[DEPTH, CUTOUT, VERDICT, DESCRIBE, MASK][..], FORWARD.as_flattened(), &METER, &DEVELOP, &FURTHER].concat()
     }
 
     fn validate(source: &str) -> Result<naga::Module, String> {
