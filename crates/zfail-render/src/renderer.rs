@@ -248,7 +248,12 @@ impl<'g> Renderer<'g> {
         let lights = chosen.iter().zip(figures).enumerate().map(|(i, (&l, figures))| {
             let kind = lights::kind_name(&self.scene.lights[l].kind);
             let shadow_ms = spans.light(i).and_then(|span| times.pass_ms(span));
-            figures_of(kind, figures, shadow_ms, shading_ms.filter(|_| chosen.len() == 1))
+            let tiled = self.scene.shadows.tile_stats(i).filter(|_| settings.shadows);
+            let light_ms = shading_ms.filter(|_| chosen.len() == 1);
+            LightFigures {
+                tiled: tiled.map_or(0, |tiled| tiled.quads as u64),
+                ..figures_of(kind, figures, shadow_ms, light_ms)
+            }
         });
         Ok(FrameStats {
             adapter: gpu.info.name.clone(),
@@ -547,6 +552,8 @@ fn figures_of(kind: &'static str, figures: LightStats, shadow_ms: Option<f64>, l
         casters: figures.casters,
         culled: figures.reasons().map(|(reason, count)| (reason.name(), count)).collect(),
         cases: figures.cases,
+        extracted: figures.extracted,
+        tiled: 0,
         triangles: crate::TriangleFigures {
             sides: figures.triangles.sides,
             dark_cap: figures.triangles.dark_cap,
