@@ -15,7 +15,7 @@ pub use setting::{Sunlight, Surroundings};
 pub use view::View;
 
 use crate::numbering::Frames;
-use crate::render::OverlayArgs;
+use crate::render::{MeasureArgs, OverlayArgs};
 use crate::{adapters, compare, verify};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, CommandFactory, Parser, Subcommand};
@@ -50,7 +50,7 @@ pub enum Command {
     Bench(Bench),
     /// Check the picture against a ray-cast oracle, on this machine's adapter and driver.
     Verify(verify::Args),
-    /// Show every method of shadows on one scene side by side: pictures, a page, and a table of wrong pixels.
+    /// Show methods of shadows, old and new, on one scene side by side: pictures, a page, and a table of wrong pixels.
     Compare(compare::Args),
     /// List the graphics adapters, in the order in which they are tried.
     Adapters(adapters::Args),
@@ -93,6 +93,8 @@ pub struct Render {
     /// How shadows are determined.
     #[arg(long, value_name = "NAME", default_value = "auto", value_parser = technique_parser())]
     pub technique: Technique,
+    #[command(flatten)]
+    pub measures: MeasureArgs,
     /// Light everything, as if nothing cast a shadow.
     #[arg(long)]
     pub no_shadows: bool,

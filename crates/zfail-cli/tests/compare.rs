@@ -32,11 +32,11 @@ fn hard_scenes() {
         (&["builtin:room", "--light", "0"], &[]),
         // The near rectangle is in shadow (E&K section 2.2.2); as deep as the eye, which is all that Moller & Haines need.
         (&["builtin:cathedral", "--light", "1"], &Z_PASS),
-        // Volumes cut through the near rectangle: "no uniform adjustment" (McG section 2).
+        // Volumes cut through the near rectangle: "no uniform adjustment" (McG section 3).
         (&["builtin:nested", "--light", "0"], &[Z_PASS[0], Z_PASS[1], "eye-count"]),
-        // The far plane cuts volumes off: "only moved the problem to the far clipping plane" (McG section 2).
+        // The far plane cuts volumes off: "only moved the problem to the far clipping plane" (McG section 3).
         (&["builtin:cathedral", "--light", "0", "--finite", "far=20"], &["carmack-preload", "finite-z-fail"]),
-        // 256 layers alias with none (E&K section 3.1), unless counts saturate, as Heidmann's do.
+        // 256 layers alias with none (E&K section 4.1), unless counts saturate, as Heidmann's do.
         (
             &["builtin:stacked", "--light", "1"],
             &[Z_PASS[1], "eye-count", "carmack-preload", "finite-z-fail", "near-caps", "everitt-kilgard"],

@@ -161,9 +161,11 @@ fn stats_have_the_keys_of_the_contract() {
     let kinds: Vec<_> = lights.iter().map(|light| light["kind"].clone()).collect();
     assert_eq!(kinds, ["directional", "point", "spot"]);
     for light in lights {
-        for key in
-            ["casters", "culled", "cases", "triangles", "vertices", "fragments", "scissor", "shadow_ms", "light_ms"]
+        for key in ["casters", "culled", "cases", "extracted", "tiled", "triangles", "vertices", "fragments", "scissor"]
         {
+            assert!(light.get(key).is_some(), "{key}");
+        }
+        for key in ["shadow_ms", "light_ms"] {
             assert!(light.get(key).is_some(), "{key}");
         }
         for key in ["sides", "dark_cap", "light_cap"] {
@@ -174,6 +176,38 @@ fn stats_have_the_keys_of_the_contract() {
         assert_eq!(light["cases"].as_array().unwrap().len(), 3);
         assert_eq!(light["scissor"].as_array().unwrap().len(), 4);
     }
+}
+
+#[test]
+fn steps_that_times_decide_elsewhere_are_taken_where_one_says_so() {
+    if !has_gpu() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let render = |name: &str, more: &[&str]| {
+        let [picture, stats] = ["png", "json"].map(|extension| format!("{name}.{extension}"));
+        let args = ["render", "builtin:container", "--size", "160x90", "-o", &picture, "--stats", &stats];
+        zfail(folder.path(), &[&args[..], more].concat()).ok();
+        let stats: Value = serde_json::from_slice(&fs::read(folder.path().join(&stats)).unwrap()).unwrap();
+        let sum = |key: &str| stats["lights"].as_array().unwrap().iter().map(|l| l[key].as_u64().unwrap()).sum::<u64>();
+        (["tiled", "extracted", "vertices"].map(sum), open(&folder.path().join(picture)).into_rgb8())
+    };
+    let (plain, picture) = render("plain", &[]);
+    assert_eq!(plain[..2], [0, 0], "neither unless asked for");
+    assert!(plain[2] > 0);
+    for (name, more) in [("tiles", ["--tiles", "always"]), ("device", ["--silhouettes", "device"])] {
+        let (figures, other) = render(name, &more);
+        assert_eq!([figures[0] > 0, figures[1] > 0], [name == "tiles", name == "device"], "{name}: {figures:?}");
+        // The tile pass may differ in pixels whose centre lies on an edge.
+        let differing = picture.pixels().zip(other.pixels()).filter(|(a, b)| a != b).count();
+        assert!(differing <= 2, "{name}: {differing} pixels differ");
+    }
+    let refused = |more: &[&str], words: &[&str]| {
+        zfail(folder.path(), &[&["render", "builtin:container", "-o", "x.png"], more].concat()).fails(2, words);
+    };
+    refused(&["--tiles", "always", "--technique", "mcguire"], &["--technique auto", "mcguire"]);
+    refused(&["--tiles", "always", "--samples", "4"], &["--samples 1"]);
+    refused(&["--silhouettes", "device", "--technique", "lengyel"], &["--technique auto", "lengyel"]);
 }
 
 #[test]

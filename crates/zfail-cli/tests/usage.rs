@@ -185,6 +185,8 @@ fn help_lists_every_option_of_the_contract() {
             "--light <N>",
             "--samples <1|4>",
             "--technique <NAME>",
+            "--tiles <never|always>",
+            "--silhouettes <cpu|device>",
             "--no-shadows",
             "--exposure <EV|auto>",
             "--terminator <soft|exact>",

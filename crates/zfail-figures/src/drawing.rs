@@ -5,7 +5,9 @@
 use crate::legend::{Legend, Sticker};
 use crate::palette::Color;
 use bytemuck::{Pod, Zeroable};
+use std::ops::Range;
 use zfail_plan::glam::{DMat4, DVec4};
+use zfail_plan::scissor::Rectangle;
 
 /// A vertex of a surface or of a volume.
 #[repr(C)]
@@ -48,6 +50,8 @@ pub struct Drawing {
     pub tints: Vec<Vertex>,
     /// Translucent triangles in any order.
     pub glass: Vec<Vertex>,
+    /// The pixels in which runs of `glass` are drawn, in order; empty if all of it is drawn everywhere.
+    pub windows: Vec<(Rectangle, Range<u32>)>,
     pub lines: Vec<Line>,
     /// Volumes that are counted: sides and dark caps, then light caps; `None` without a heat map.
     pub counted: Option<[Vec<Vertex>; 2]>,
@@ -73,10 +77,22 @@ impl Drawing {
             surfaces,
             tints: Vec::new(),
             glass: Vec::new(),
+            windows: Vec::new(),
             lines: Vec::new(),
             counted: None,
             stickers: Vec::new(),
             legend: Legend::default(),
+        }
+    }
+
+    /// Adds a translucent triangle, drawn in the pixels of `window`. Of a drawing, all have one, or none.
+    pub fn glass_within(&mut self, window: Rectangle, triangle: [Vertex; 3]) {
+        let start = self.glass.len() as u32;
+        self.glass.extend(triangle);
+        let end = self.glass.len() as u32;
+        match self.windows.last_mut() {
+            Some((last, range)) if *last == window => range.end = end,
+            _ => self.windows.push((window, start..end)),
         }
     }
 

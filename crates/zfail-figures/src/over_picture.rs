@@ -47,7 +47,7 @@ pub fn compose(model: &mut Model, plans: &mut Plans, picture: &Picture<'_>) -> R
             for triangle in volumes::triangles(plan, model) {
                 let (hue, opacity) = glass_color(model, &triangle, by_light, picture.lights);
                 let color = with_opacity(hue, opacity);
-                drawing.glass.extend(flat(triangle.corners, color, triangle.winding.into()));
+                drawing.glass_within(triangle.scissor, flat(triangle.corners, color, triangle.winding.into()));
             }
             volume_legend(&mut drawing, model, by_light, picture.lights);
         }

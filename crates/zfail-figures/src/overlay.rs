@@ -6,7 +6,8 @@ use std::str::FromStr;
 /// What a figure shows. Papers: E&K is Everitt & Kilgard 2002, McG is McGuire et al. 2003.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Overlay {
-    /// Translucent shadow volumes, coloured by part, as the technique draws them (McG Image 5, right).
+    /// Translucent shadow volumes, coloured by part, as the technique draws them: what is left of them, within their scissors
+    /// (McG Image 5, right).
     Volumes,
     /// Translucent shadow volumes, a colour for each light.
     VolumesByLight,
@@ -64,7 +65,7 @@ impl Overlay {
     #[must_use]
     pub const fn description(self) -> &'static str {
         match self {
-            Self::Volumes => "shadow volumes as the technique draws them, coloured by part",
+            Self::Volumes => "shadow volumes as the technique draws them, within their scissors, coloured by part",
             Self::VolumesByLight => "the same, a colour for each light",
             Self::Silhouettes => "silhouette edges as the lights see them",
             Self::Cases => {

@@ -7,6 +7,7 @@ use crate::model::{Model, Place};
 use std::ops::Range;
 use zfail_plan::glam::{DVec3, DVec4};
 use zfail_plan::plan::{Draw, FramePlan};
+use zfail_plan::scissor::Rectangle;
 use zfail_plan::volume;
 
 /// A part of a shadow volume.
@@ -26,6 +27,8 @@ pub struct Triangle {
     pub light: usize,
     /// +1 if its outside is counter-clockwise, -1 if clockwise.
     pub winding: i8,
+    /// The pixels in which it is drawn.
+    pub scissor: Rectangle,
 }
 
 /// Calls `each` for every draw of a plan, with its light and where its caster is.
@@ -53,7 +56,8 @@ pub fn triangles(plan: &FramePlan, model: &Model) -> Vec<Triangle> {
         for (part, range, winding) in parts {
             for corners in indices(plan, range).chunks_exact(3) {
                 let corner = |k: usize| vertex(draw, place, topology.position(corners[k] >> 1), corners[k] & 1 == 1);
-                triangles.push(Triangle { corners: [corner(0), corner(1), corner(2)], part, light, winding });
+                let corners = [corner(0), corner(1), corner(2)];
+                triangles.push(Triangle { corners, part, light, winding, scissor: draw.scissor });
             }
         }
     });

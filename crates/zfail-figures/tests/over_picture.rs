@@ -204,6 +204,39 @@ fn casters_between_eye_and_light_are_in_another_case() {
     assert_eq!(case_at(1, cubes[0]), Some(1), "the comparison can fail");
 }
 
+/// The first and the last column of the image that a ball covers, by brute force.
+fn ball_columns(view: &View, center: DVec3, radius: f64) -> [f64; 2] {
+    let around = (0..400).flat_map(|i| (0..200).map(move |j| (f64::from(i) * 0.0157, f64::from(j) * 0.0157)));
+    let points = around.map(|(a, b)| center + DVec3::new(a.cos() * b.sin(), b.cos(), a.sin() * b.sin()) * radius);
+    points
+        .map(|p| pixel(view, p))
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p.x), high.max(p.x)])
+}
+
+#[test]
+fn volumes_are_drawn_within_their_scissors() {
+    let Some(gpu) = gpu() else { return };
+    let (view, center, range) = (view(), DVec3::new(-0.4, 1.4, 0.0), 1.1);
+    let mut scene = scene(&CUBES, &LIGHTS[..1]);
+    scene.lights[0].kind = LightKind::Point { position: center, range };
+    let [left, right] = ball_columns(&view, center, range);
+    // Pixels with volumes over them, within the light's reach and outside.
+    let covered = |technique| {
+        let options = Options { technique, ..of_light(0) };
+        let drawn = figure(&gpu, &scene, &view, &[Overlay::Volumes], &options, GREY);
+        let changed = pixels().zip(drawn).filter(|(_, color)| distance(*color, [GREY; 3]) > 3);
+        let (within, outside): (Vec<_>, Vec<_>) = changed.partition(|([x, _], _)| {
+            let x = f64::from(*x) + 0.5;
+            left - 1.0 < x && x < right + 1.0
+        });
+        [within.len(), outside.len()]
+    };
+    let [within, outside] = covered(Technique::Mcguire);
+    assert!(within > 200 && outside == 0, "{within} {outside}");
+    let [_, outside] = covered(Technique::EverittKilgard);
+    assert!(outside > 100, "the comparison can fail: {outside}");
+}
+
 #[test]
 fn scissors_enclose_what_a_light_can_reach() {
     let Some(gpu) = gpu() else { return };
@@ -213,14 +246,7 @@ fn scissors_enclose_what_a_light_can_reach() {
     scene.lights[0].kind = LightKind::Point { position: center, range };
     let options = Options { technique: Technique::Mcguire, ..of_light(0) };
     let drawn = figure(&gpu, &scene, &view, &[Overlay::Scissors], &options, GREY);
-    // The ball's extent in the image, by brute force.
-    let extent = |radius: f64| {
-        let around = (0..400).flat_map(|i| (0..200).map(move |j| (f64::from(i) * 0.0157, f64::from(j) * 0.0157)));
-        let points = around.map(|(a, b)| center + DVec3::new(a.cos() * b.sin(), b.cos(), a.sin() * b.sin()) * radius);
-        points
-            .map(|p| pixel(&view, p))
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p.x), high.max(p.x)])
-    };
+    let extent = |radius: f64| ball_columns(&view, center, radius);
     let column = |x: f64| {
         let inked = |x: i32, y: u32| {
             let x = x.clamp(0, SIZE[0] as i32 - 1) as usize;

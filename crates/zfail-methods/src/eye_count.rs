@@ -2,8 +2,9 @@
 //!
 //! "This method counts the number of shadow volumes enclosing the center of projection by casting a ray ... This is
 //! effectively a full-screen cap. This method produces incorrect results because it approximates the viewport rectangle
-//! with a single point" (McG section 3). With the eye, and all of the near rectangle, deep inside a volume it is right.
-//! Where a volume cuts partway through the rectangle, no single number is.
+//! with a single point" (McG section 3). As McG tells it, all stencil values are incremented "by one" if the count is not
+//! zero. Here they start from the count itself, which is right wherever all of the near rectangle is in as many volumes as
+//! the eye. Where a volume cuts partway through the rectangle, no single number is.
 //!
 //! The ray goes to the light: the eye is in as many layers of shadow as the ray crosses casting triangles.
 

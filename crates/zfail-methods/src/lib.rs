@@ -1,4 +1,4 @@
-//! Every shadow method that the papers tell of, runnable side by side.
+//! Shadow methods that the papers tell of, runnable side by side: those of [`Method::ALL`].
 //!
 //! In: a [`Scene`](zfail_plan::scene::Scene), a [`View`](zfail_plan::view::View) and one of its lights. Out: a
 //! [`Shadow`]: a mask of what the light reaches, as [`zfail_render::Aovs::shadow`] has it, and what it cost.

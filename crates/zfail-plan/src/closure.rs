@@ -3,7 +3,7 @@
 //! In: a volume's index lists, or a topology with weights. Out: how many edges do not cancel, which is 0
 //! unless there is a bug. No position is looked at, so no rounding can make an open volume pass or a closed one fail; what
 //! is proved holds on every device that places the same vertex in the same place. Closedness is what makes the count of
-//! z-fail the same along every ray (E&K 2002, section 2.2.3; McGuire et al. 2003, section 4).
+//! z-fail the same along every ray (McGuire et al. 2003, section 2; E&K 2002, section 2.2.3).
 
 use crate::scene::Scene;
 use crate::topology::{NONE, Topology, TopologyError};

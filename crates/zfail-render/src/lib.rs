@@ -1,5 +1,5 @@
-//! The complete rendering system of McGuire, Hughes, Egan, Kilgard and Everitt, "Fast, Practical and Robust Shadows"
-//! (2003), section 8, around the shadow determination of [`zfail`].
+//! A rendering system around the shadow determination of [`zfail`], after that of McGuire, Hughes, Egan, Kilgard and Everitt,
+//! "Fast, Practical and Robust Shadows" (2003), section 8.
 //!
 //! In: a [`Scene`](zfail_plan::scene::Scene) and a [`View`](zfail_plan::view::View). Out: a [`Picture`] with
 //! [`FrameStats`], or [`Aovs`]. Shading is forward, all lights in one draw: the verdict pass counts every light's volumes
@@ -19,6 +19,7 @@ mod exposure;
 mod forward_pass;
 mod fragment_counter;
 mod frame;
+mod further_pass;
 mod geometry;
 mod gpu;
 mod gpu_data;

@@ -79,7 +79,7 @@ pub fn greatest_reflectance(roughness: f64) -> f64 {
 }
 
 /// `light`'s kind as far as it matters to a picture: its range is not longer than the distance beyond which what any
-/// surface reflects of it is less than `precision` shows (McGuire et al. 2003, section 4.1, "effective radius"). What is
+/// surface reflects of it is less than `precision` shows (McGuire et al. 2003, section 4, on a light's bounds). What is
 /// computed per pixel keeps the range of the file, by which the light fades.
 pub fn effective(light: &Light, precision: &Precision) -> LightKind {
     let peak = f64::from(light.color.into_iter().fold(0.0, f32::max)) * f64::from(light.intensity);

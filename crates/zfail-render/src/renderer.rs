@@ -12,6 +12,7 @@ use crate::exposure::ExposureMeter;
 use crate::forward_pass::ForwardPass;
 use crate::fragment_counter::FragmentCounter;
 use crate::frame::FrameData;
+use crate::further_pass::FurtherPass;
 use crate::layouts::Layouts;
 use crate::scene::SceneOnGpu;
 use crate::stats::{FrameStats, LightFigures};
@@ -42,6 +43,8 @@ pub struct Renderer<'g> {
     verdicts: HashMap<(u32, bool), VerdictPass>,
     /// By sample count.
     darkroom: HashMap<u32, (ExposureMeter, DevelopPass)>,
+    /// By sample count.
+    further: HashMap<u32, FurtherPass>,
     targets: Option<Targets>,
     timer: Timer,
     measured: Option<Measured>,
@@ -67,6 +70,7 @@ impl<'g> Renderer<'g> {
             backdrop: BackdropPass::default(),
             verdicts: HashMap::new(),
             darkroom: HashMap::new(),
+            further: HashMap::new(),
             targets: None,
             timer: Timer::default(),
             measured: None,
@@ -264,7 +268,12 @@ impl<'g> Renderer<'g> {
         let lights = chosen.iter().zip(figures).enumerate().map(|(i, (&l, figures))| {
             let kind = lights::kind_name(&self.scene.lights[l].kind);
             let shadow_ms = spans.light(i).and_then(|span| times.pass_ms(span));
-            figures_of(kind, figures, shadow_ms, shading_ms.filter(|_| chosen.len() == 1))
+            let tiled = self.scene.shadows.tile_stats(i).filter(|_| settings.shadows);
+            let light_ms = shading_ms.filter(|_| chosen.len() == 1);
+            LightFigures {
+                tiled: tiled.map_or(0, |tiled| tiled.quads as u64),
+                ..figures_of(kind, figures, shadow_ms, light_ms)
+            }
         });
         Ok(FrameStats {
             adapter: gpu.info.name.clone(),
@@ -293,6 +302,8 @@ fn figures_of(kind: &'static str, figures: LightStats, shadow_ms: Option<f64>, l
         casters: figures.casters,
         culled: figures.reasons().map(|(reason, count)| (reason.name(), count)).collect(),
         cases: figures.cases,
+        extracted: figures.extracted,
+        tiled: 0,
         triangles: crate::TriangleFigures {
             sides: figures.triangles.sides,
             dark_cap: figures.triangles.dark_cap,

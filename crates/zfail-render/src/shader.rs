@@ -72,6 +72,10 @@ const DEVELOP: [Program; 2] = [
     program!("develop", "hdr_single", "screen", "tone_map", "develop"),
     program!("develop 4x", "hdr_multi", "screen", "tone_map", "develop"),
 ];
+const FURTHER: [Program; 2] = [
+    program!("further", "hdr_single", "screen", "further_single"),
+    program!("further 4x", "hdr_multi", "screen", "further_multi"),
+];
 
 /// Shading of what `vertices` read; `verdicts` are the samples per pixel of the light verdicts, if there are any.
 pub fn forward(vertices: Vertices, verdicts: Option<u32>) -> Program {
@@ -100,6 +104,10 @@ pub fn develop(samples: u32) -> Program {
     DEVELOP[usize::from(samples > 1)]
 }
 
+pub fn further(samples: u32) -> Program {
+    FURTHER[usize::from(samples > 1)]
+}
+
 impl Program {
     pub fn module(&self, device: &wgpu::Device) -> wgpu::ShaderModule {
         device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -122,6 +130,7 @@ mod tests {
             &GROUND,
             &METER,
             &DEVELOP,
+            &FURTHER,
         ]
         .concat()
     }

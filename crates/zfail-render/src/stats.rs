@@ -31,8 +31,12 @@ pub struct LightFigures {
     pub casters: u32,
     /// Casters without a volume, by reason.
     pub culled: BTreeMap<&'static str, u32>,
-    /// Casters in case 1 (z-pass), 2 (z-fail, no caps) and 3 (z-fail with caps) of McGuire et al. 2003.
+    /// Casters in case 1 (z-pass), 2 (z-fail without light cap) and 3 (z-fail with it) of McGuire et al. 2003.
     pub cases: [u32; 3],
+    /// Casters whose silhouettes the device found; their triangles and vertices are not counted here.
+    pub extracted: u32,
+    /// Sides in sight that were counted by tiles instead of being rasterised.
+    pub tiled: u64,
     /// Triangles submitted.
     pub triangles: TriangleFigures,
     /// Vertices submitted.

@@ -23,9 +23,8 @@ pub const ALBEDO: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// What [`DEPTH`] holds where there is no surface.
 pub const NO_SURFACE: f32 = f32::MAX;
 
-/// Bytes per sample: verdicts, radiance or picture, depth-stencil (padded), and for blended surfaces verdicts and
-/// depth-stencil once more.
-const BYTES_PER_SAMPLE: u64 = 4 + 8 + 8 + 4 + 8;
+/// Bytes per sample: verdicts, radiance or picture, depth-stencil (padded), and for blended surfaces all of them once more.
+const BYTES_PER_SAMPLE: u64 = 2 * (4 + 8 + 8);
 /// Bytes per pixel beside its samples: HDR, LDR, and the attributes' depth, normal, albedo and depth-stencil.
 const BYTES_PER_PIXEL: u64 = 8 + 4 + 4 + 4 + 4 + 8;
 /// All targets together may take this much.
@@ -45,6 +44,7 @@ pub struct Targets {
     hdr: Option<HdrTargets>,
     verdicts: Option<Verdicts>,
     layer: Option<Layer>,
+    further: Option<wgpu::TextureView>,
 }
 
 /// What frames with shadows on blended surfaces need.
@@ -91,6 +91,7 @@ impl Targets {
             hdr: None,
             verdicts: None,
             layer: None,
+            further: None,
         })
     }
 
@@ -121,6 +122,12 @@ impl Targets {
                 verdicts: Verdicts::new(gpu, layouts, size, samples),
             }
         })
+    }
+
+    /// Radiance that is drawn apart, of lights on blended surfaces whose verdicts did not fit the layer's texel.
+    pub fn further(&mut self, gpu: &Gpu) -> &wgpu::TextureView {
+        let (size, samples) = (self.size, self.samples);
+        self.further.get_or_insert_with(|| view(&create(gpu, "further light", RADIANCE, size, samples)))
     }
 }
 

@@ -87,6 +87,42 @@ fn shadows_fall_on_blended_surfaces() {
 }
 
 #[test]
+fn light_of_many_lights_is_blended_as_that_of_few() {
+    let Some(gpu) = gpu() else { return };
+    // Nothing casts, so that shadows change nothing: seen from the front, a film that shines by itself, glass, and film.
+    let layers = [
+        Material { unlit: true, ..film([0.3, 0.1, 0.2], 0.5) },
+        Material {
+            transmission: Some(Transmission { share: 0.7, texture: None, tint: [0.9, 1.0, 0.8] }),
+            ..matt([0.8; 3])
+        },
+        film([0.9, 0.5, 0.7], 0.4),
+    ];
+    for count in [33, 70] {
+        let mut scene = wall(matt([0.5, 0.4, 0.3]));
+        for (height, material) in (1..).zip(layers.iter().rev()) {
+            let place = DAffine3::from_translation(DVec3::Z * f64::from(height) * 0.3);
+            add(&mut scene, square(9.0), material.clone(), place);
+        }
+        scene.instances.iter_mut().for_each(|instance| instance.casts_shadow = false);
+        scene.ambient = [0.2; 3];
+        let lamp = |i: usize| sun(DVec3::new((i % 9) as f64 - 4.0, (i / 9) as f64 - 4.0, -5.0), 0.05 + 0.01 * i as f32);
+        scene.lights = (0..count).map(lamp).collect();
+        for samples in [1, 4] {
+            let shown = |scene: &Scene, shadows| {
+                at(&picture(&gpu, scene, &head_on(), &Settings { samples, shadows, ..plain() }), 16, 16)
+            };
+            let (many, few) = (shown(&scene, true), shown(&scene, false));
+            let alike = |a: [f32; 3]| a.iter().zip(few).all(|(&a, b)| close(a, b.into(), 2e-3));
+            assert!(alike(many), "{count} lights, {samples} samples: {many:?} is not {few:?}");
+            let mut fewer = scene.clone();
+            fewer.lights.pop();
+            assert!(!alike(shown(&fewer, true)), "the comparison can fail");
+        }
+    }
+}
+
+#[test]
 fn blended_surfaces_cast_where_the_scene_says_so() {
     let Some(gpu) = gpu() else { return };
     let shadow = |blended_casts, transmission| {

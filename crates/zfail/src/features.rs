@@ -5,7 +5,7 @@ use wgpu::{Features, TextureFormat};
 /// Those of the adapter's features that make shadows better; none is required.
 ///
 /// `DEPTH32FLOAT_STENCIL8` gives reversed depth its even precision, `DEPTH_CLIP_CONTROL` lets the rasteriser clamp depth
-/// for cameras with a finite far plane (E&K 2002, section 3.4, "depth clamping").
+/// for cameras with a finite far plane (E&K 2002, section 4.2, "Depth Clamping").
 #[must_use]
 pub fn wanted_features(adapter: Features) -> Features {
     adapter & (Features::DEPTH32FLOAT_STENCIL8 | Features::DEPTH_CLIP_CONTROL)

@@ -5,7 +5,7 @@
 //!
 //! z-fail (Bilodeau & Songy 1999; Carmack 2000): where a face of the volume lies at or behind the visible surface, a
 //! front face decrements and a back face increments, wrapping, so that their order does not matter. Front and back are
-//! told apart in one draw (E&K 2002, section 4.1, "two-sided stencil testing"). z-pass (Heidmann 1991) does the opposite
+//! told apart in one draw (E&K 2002, section 4.3, "Two-Sided Stencil Testing"). z-pass (Heidmann 1991) does the opposite
 //! where a face lies in front of the visible surface. Both test depth strictly: what coincides with the surface is behind.
 //! Only clamped depths are in front where they are equal: what lies before the near plane is clamped to 1, and a surface that
 //! the near plane cuts can have that very depth.

@@ -57,7 +57,7 @@ fn one() -> @location(0) vec4<f32> {
     return vec4<f32>(1.0);
 }
 
-// Depth clamping (Everitt & Kilgard 2002, section 3.4) by hand, for devices without it: the rasteriser sees a depth it will
+// Depth clamping (Everitt & Kilgard 2002, section 4.2) by hand, for devices without it: the rasteriser sees a depth it will
 // not clip, and the fragment gets the clamped true one, per sample, because every sample is tested on its own.
 struct ClampedVolume {
     @invariant @builtin(position) clip: vec4<f32>,

@@ -1,4 +1,4 @@
-//! `zfail compare`: every method that the papers tell of, on one scene and camera.
+//! `zfail compare`: the methods of [`zfail_methods`] on one scene and camera.
 //!
 //! Data flow: `measure` (each method's masks, judged by the oracle, and what they cost) and `composite` (pictures that
 //! differ by the masks alone) -> `pictures` (PNGs) -> `record` (the table as JSON), `sheet` (a contact sheet) and `page` (a

@@ -36,8 +36,8 @@ pub fn html(record: &Record, pictures: &Pictures) -> Result<String, Error> {
     let mut page = format!(
         "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>Shadows of {scene}, by every method</title>\n<style>\n{STYLE}</style>\n\
-         <h1>Shadows of {scene}, by every method</h1>\n"
+         <title>Shadows of {scene}, by method</title>\n<style>\n{STYLE}</style>\n\
+         <h1>Shadows of {scene}, by method</h1>\n"
     );
     page += &introduction(record);
     page += &slider(&shown, &differences);

@@ -1,14 +1,16 @@
 //! `zfail render`: one frame of a scene as files, or many.
 //!
 //! Data flow: `destinations` (where everything goes) -> `results` (a rendered frame, encoded) -> [`crate::output`].
-//! `overlays` draws on the picture. `sequence` does so for numbered frames, and `seal` tells it which of them are there already.
+//! `measures` says who does the work, `overlays` draws on the picture. `sequence` does so for numbered frames, and `seal` tells it which of them are there already.
 
 mod destinations;
+mod measures;
 mod overlays;
 mod results;
 mod seal;
 mod sequence;
 
+pub use measures::MeasureArgs;
 pub use overlays::OverlayArgs;
 pub use results::picture_file;
 
@@ -29,6 +31,7 @@ use zfail_scene::Animated;
 /// If an argument names nothing in the scene, the scene or the device fails, or a file cannot be written.
 pub fn run(args: &args::Render) -> Result<(), Error> {
     args.overlays.check(&args.output)?;
+    args.measures.check(args.technique, args.samples)?;
     match &args.sequence.frames {
         Some(frames) => sequence::run(args, frames.0.clone()),
         None => still(args),
@@ -78,7 +81,7 @@ fn load(args: &args::Render, moment: Option<&args::Moment>) -> Result<Animated, 
 
 fn settings(args: &args::Render, lights: &[usize]) -> Settings {
     // Files are the same bytes on every run.
-    Settings {
+    args.measures.apply(Settings {
         technique: args.technique,
         samples: args.samples,
         shadows: !args.no_shadows,
@@ -86,8 +89,7 @@ fn settings(args: &args::Render, lights: &[usize]) -> Settings {
         exposure: args.exposure,
         terminator: args.terminator,
         ..Settings::default()
-    }
-    .repeatable()
+    })
 }
 
 /// What the renderer says, as the program says it.

@@ -2,6 +2,7 @@
 
 use crate::Error;
 use bytemuck::{NoUninit, cast_slice};
+use std::ops::Range;
 use zfail_render::{Gpu, wgpu};
 
 /// A list of vertices or instances.
@@ -36,8 +37,13 @@ impl Stream {
 
     /// Draws the list as triangles.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline) {
+        self.draw_part(pass, pipeline, 0..self.count);
+    }
+
+    /// Draws a part of the list as triangles.
+    pub fn draw_part(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline, vertices: Range<u32>) {
         if self.bound(pass, pipeline) {
-            pass.draw(0..self.count, 0..1);
+            pass.draw(vertices, 0..1);
         }
     }
 

@@ -116,7 +116,7 @@ impl<'g> Canvas<'g> {
             self.count(&mut encoder, drawing.finite, &mut targets, target);
         }
         self.surfaces(&mut encoder, &drawing.surfaces, &targets, target);
-        self.layers(&mut encoder, &targets);
+        self.layers(&mut encoder, drawing, &targets);
         self.composite(&mut encoder, &targets, target);
         gpu.queue.submit([encoder.finish()]);
         self.targets = Some(targets);
@@ -174,7 +174,7 @@ impl<'g> Canvas<'g> {
         }
     }
 
-    fn layers(&self, encoder: &mut wgpu::CommandEncoder, targets: &Targets) {
+    fn layers(&self, encoder: &mut wgpu::CommandEncoder, drawing: &Drawing, targets: &Targets) {
         let depth = wgpu::RenderPassDepthStencilAttachment {
             depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Discard }),
             ..fresh_depth(&targets.depth)
@@ -182,7 +182,14 @@ impl<'g> Canvas<'g> {
         let mut pass = begin(encoder, &[targets.glass.attachment(), targets.ink.attachment()], Some(depth));
         pass.set_bind_group(0, &self.frame_binding, &[]);
         self.tints.draw(&mut pass, &self.pipelines.tint);
-        self.glass.draw(&mut pass, &self.pipelines.glass);
+        if drawing.windows.is_empty() {
+            self.glass.draw(&mut pass, &self.pipelines.glass);
+        }
+        for ([x, y, width, height], vertices) in &drawing.windows {
+            pass.set_scissor_rect(*x, *y, *width, *height);
+            self.glass.draw_part(&mut pass, &self.pipelines.glass, vertices.clone());
+        }
+        pass.set_scissor_rect(0, 0, targets.size[0], targets.size[1]);
         self.lines.draw_quads(&mut pass, &self.pipelines.hidden_ink);
         self.lines.draw_quads(&mut pass, &self.pipelines.ink);
     }

@@ -4,7 +4,7 @@
 //! into them, the scissor rectangle and figures. Nothing that stays as it was is computed again: a caster whose light did
 //! not move in its object space keeps its silhouette, its caps and their place in the index array.
 //!
-//! One light's casters pass these stages, which are McGuire et al. 2003, section 7, and more: [`reach`](self) of the
+//! One light's casters pass these stages, which are McGuire et al. 2003, section 6, and more: [`reach`](self) of the
 //! light, parts off screen, receivers, occluders, extraction by the device, facing, batches, z-pass or z-fail, caps.
 
 mod ball;

@@ -20,22 +20,25 @@ pub struct Part {
     pub lights: Range<usize>,
     /// Draws solid surfaces.
     pub solid: bool,
-    /// Draws blended surfaces, which are lit by all lights at once: they have shadows if one texel holds all verdicts.
+    /// Draws blended surfaces.
     pub blended: bool,
+    /// Adds lights to surfaces that an earlier part has drawn.
+    pub further: bool,
 }
 
 /// The parts of a frame in order.
 pub fn parts(lights: usize, shadows: bool, blends: bool) -> Vec<Part> {
     if !shadows || lights == 0 {
-        return vec![Part { lights: 0..lights, solid: true, blended: blends }];
+        return vec![Part { lights: 0..lights, solid: true, blended: blends, further: false }];
     }
-    let starts = (0..lights).step_by(verdict_pass::LIGHTS);
-    let solid = starts.map(|start| {
-        let lights = start..lights.min(start + verdict_pass::LIGHTS);
-        Part { lights, solid: true, blended: false }
-    });
-    let blended = Part { lights: 0..lights, solid: false, blended: true };
-    solid.chain(blends.then_some(blended)).collect()
+    let surfaces = [true, false].into_iter().filter(|&solid| solid || blends);
+    let groups = |solid| {
+        (0..lights).step_by(verdict_pass::LIGHTS).map(move |start| {
+            let lights = start..lights.min(start + verdict_pass::LIGHTS);
+            Part { lights, solid, blended: !solid, further: start > 0 }
+        })
+    };
+    surfaces.flat_map(groups).collect()
 }
 
 /// Numbers what is timed: verdicts, forward, develop, then each light's volumes.
@@ -71,15 +74,15 @@ mod tests {
 
     #[test]
     fn many_lights_are_divided() {
-        let whole = |lights: usize, blended| Part { lights: 0..lights, solid: true, blended };
+        let whole = |lights: usize, blended| Part { lights: 0..lights, solid: true, blended, further: false };
         assert_eq!(parts(50, false, true), [whole(50, true)]);
         assert_eq!(parts(32, true, false), [whole(32, false)]);
         assert_eq!(parts(32, true, true), [whole(32, false), Part { solid: false, ..whole(32, true) }]);
         let divided = parts(50, true, true);
-        assert_eq!(divided.iter().map(|p| p.lights.clone()).collect::<Vec<_>>(), [0..32, 32..50, 0..50]);
+        assert_eq!(divided.iter().map(|p| p.lights.clone()).collect::<Vec<_>>(), [0..32, 32..50, 0..32, 32..50]);
         assert_eq!(
-            divided.iter().map(|p| [p.solid, p.blended]).collect::<Vec<_>>(),
-            [[true, false], [true, false], [false, true]]
+            divided.iter().map(|p| [p.solid, p.blended, p.further]).collect::<Vec<_>>(),
+            [[true, false, false], [true, false, true], [false, true, false], [false, true, true]]
         );
     }
 }

@@ -6,9 +6,10 @@ use super::{Renderer, no_targets};
 use crate::backdrop_pass::Behind;
 use crate::forward_pass::{self, Shadows, Step};
 use crate::frame::Shading;
+use crate::further_pass::FurtherPass;
 use crate::gpu_data::LightRecord;
 use crate::pipeline::{cleared, cleared_depth, continued, read_only};
-use crate::verdict_pass::{self, Verdict, VerdictPass, VerdictTargets};
+use crate::verdict_pass::{Verdict, VerdictPass, VerdictTargets};
 use crate::{RenderError, Settings, lights, tone_map};
 use half::f16;
 use zfail::LightStats;
@@ -54,7 +55,7 @@ impl Renderer<'_> {
         )?;
         let targets = self.targets.as_mut().ok_or_else(no_targets)?;
         // Blended surfaces have a verdict of their own: that on the nearest of them.
-        let layered = spans.shadows && !part.solid && lights.len() <= verdict_pass::LIGHTS;
+        let layered = spans.shadows && !part.solid;
         let shadowed = spans.shadows && part.solid || layered;
         // Drawing everything twice is cheaper than a texture of verdicts unless there is more to draw than to fill.
         let few = scene.draws.solid_triangles() < view.size[0] * view.size[1] / 8;
@@ -64,7 +65,7 @@ impl Renderer<'_> {
             (true, false) => Shadows::Bits,
         };
         let sky = scene.surroundings.sky.is_some();
-        let step = Step::new(settings, finish == Finish::Forward, &records, shadows, added && part.solid, sky);
+        let step = Step::new(settings, finish == Finish::Forward, &records, shadows, part.further, sky);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let depth_stencil = targets.depth_stencil.clone();
         if shadowed {
@@ -106,6 +107,8 @@ impl Renderer<'_> {
                 let [r, g, b] = exposed.background.map(|c| c * exposed.exposure);
                 cleared(&targets.ldr_view, tone_map::displayed([r, g, b]))
             }
+            // What is blended over itself has to start from black: under more light, what is there stays as visible.
+            Finish::Darkroom if part.further && layered => cleared(targets.further(gpu), [0.0; 4]),
             Finish::Darkroom if added => continued(&targets.hdr(gpu).samples),
             Finish::Darkroom => {
                 // A negative share to be shown as it is marks what is no surface.
@@ -122,6 +125,11 @@ impl Renderer<'_> {
         self.backdrop.draw(&mut pass, verdicts.as_ref(), &self.frame, scene, step, &drawn);
         self.forward.draw(&mut pass, verdicts.as_ref(), &self.frame, scene, step, blended);
         drop(pass);
+        if part.further && layered {
+            let light = targets.further(gpu).clone();
+            let pass = self.further.entry(samples).or_insert_with(|| FurtherPass::new(gpu, samples));
+            pass.encode(gpu, &mut encoder, &light, &targets.hdr(gpu).samples);
+        }
         gpu.queue.submit([encoder.finish()]);
         Ok(())
     }

@@ -91,7 +91,8 @@ fn shade(in: Fragment, front: bool, shadowed: u32) -> vec4<f32> {
         }
         color = min(color, vec3<f32>(BRIGHTEST));
     } else if ADDED {
-        return vec4<f32>(0.0);
+        // It has been shown already; blended, it still covers what is added behind it.
+        color = vec3<f32>(0.0);
     }
     if DEVELOPED {
         if !UNLIT {

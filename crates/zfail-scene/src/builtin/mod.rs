@@ -45,7 +45,10 @@ pub const SCENES: &[Entry] = &[
     entry("soft", "Twelve clustered lights that together cast soft shadows (E&K Figure 4, right)"),
     entry("sun", "A directional light, seen with it and against it (E&K Figure 5)"),
     entry("cathedral", "A hall with stepped seating, a sphere and a grid of cubes (McGuire et al., Images 1, 5 and 6)"),
-    entry("staircase", "A light on top of a long staircase: deeply nested volumes (McGuire et al., Image 3)"),
+    entry(
+        "staircase",
+        "A light on top of a staircase: nested volumes, up to 11 layers (after McGuire et al., Image 3)",
+    ),
     entry("jail", "A light that shines out horizontally through a jail-cell door (Carmack's letter)"),
     entry("nested", "The eye amid nested, pierced shells, in many volumes at once (Carmack's letter)"),
     entry("open", "Open, non-manifold, inside-out and damaged meshes, mirrored and sheared (Kim, Kim & Turk 2008)"),

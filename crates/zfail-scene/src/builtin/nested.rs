@@ -1,5 +1,5 @@
 //! The eye in the middle of nested volumes: pierced, open shells around the light and around the camera
-//! (the flight without clipping of Carmack's letter; E&K section 3).
+//! (the flight without clipping of Carmack's letter; E&K section 2.2.2).
 
 use glam::{DAffine3, DVec2, DVec3};
 use std::f64::consts::TAU;

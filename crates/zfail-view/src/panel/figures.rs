@@ -22,8 +22,8 @@ pub fn figures(ui: &mut Ui, stage: &Stage<'_>, gpu: &wgpu::AdapterInfo) {
         for (name, count) in [
             ("casters", total(|light| light.casters)),
             ("  case 1: z-pass", total(|light| light.cases[0])),
-            ("  case 2: z-fail without caps", total(|light| light.cases[1])),
-            ("  case 3: z-fail with caps", total(|light| light.cases[2])),
+            ("  case 2: z-fail without light cap", total(|light| light.cases[1])),
+            ("  case 3: z-fail with light cap", total(|light| light.cases[2])),
             ("  without a volume", total(|light| light.culled.values().sum())),
             ("triangles: sides", total(|light| light.triangles.sides)),
             ("  dark caps", total(|light| light.triangles.dark_cap)),
