@@ -90,17 +90,18 @@ fn what_one_picture_does_not_prove_closer_ones_do() {
 }
 
 #[test]
-fn a_scene_without_shadows_proves_too_little_and_says_so() {
+fn a_picture_without_shadows_proves_too_little_and_says_so() {
     if !has_gpu() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
-    // A floor that nothing stands on, seen from above, lit from there.
+    // A floor that nothing stands on, seen from above, lit from there; closer views would see that it is dark below.
     fs::write(folder.path().join("floor.obj"), "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\nf 1 2 3 4\n").unwrap();
-    let run = zfail(folder.path(), &["verify", "floor.obj", "--size", "64x36", "--technique", "auto", "-q"]);
+    let run =
+        zfail(folder.path(), &["verify", "floor.obj", "--size", "64x36", "--technique", "auto", "-q", "--no-closeups"]);
     assert_eq!(run.code, Some(1), "{}", run.stdout);
     let last = run.stdout.lines().last().unwrap();
-    assert!(last.starts_with("too little is proved: 0 wrong among ") && last.contains("in shadow"), "{last}");
+    assert!(last.starts_with("too little is proved: 0 wrong among "), "{last}");
 }
 
 /// 280 discs over a floor, each of 200 triangles around its middle: more layers than 8 bits can count.
