@@ -146,7 +146,6 @@ fn sampler() -> Scene {
         ground: None,
         exposure: None,
         notices: vec![],
-        ..Scene::default()
     }
 }
 
