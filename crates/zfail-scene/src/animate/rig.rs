@@ -38,6 +38,14 @@ pub(crate) struct Move {
 }
 
 impl Move {
+    /// Bytes of its tracks.
+    pub fn size(&self) -> u64 {
+        fn size<const N: usize>(track: &Option<Track<N>>) -> u64 {
+            track.as_ref().map_or(0, |track| (track.key_count() * 3 * size_of::<[f32; N]>()) as u64)
+        }
+        size_of::<Self>() as u64 + size(&self.translation) + size(&self.rotation) + size(&self.scale)
+    }
+
     fn parent_from_node(&self, seconds: f64) -> DAffine3 {
         let vector = |track: &Option<Track<3>>, rest| track.as_ref().map_or(rest, |track| track.vector(seconds));
         let rotation = self.rotation.as_ref().and_then(|track| track.rotation(seconds));

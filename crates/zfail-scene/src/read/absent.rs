@@ -11,7 +11,7 @@ pub(super) mod draco {
     use crate::read::schema::Root;
 
     /// Refuses compressed primitives.
-    pub fn expand(root: &mut Root, _: &mut Buffers<'_>, _: &Budget) -> Result<()> {
+    pub fn expand(root: &mut Root, _: &mut Buffers<'_>, _: &Budget, _: &mut [String]) -> Result<()> {
         for (m, mesh) in root.meshes.iter().enumerate() {
             if let Some(p) = mesh.primitives.iter().position(|primitive| primitive.extensions.draco.is_some()) {
                 return Err(invalid(format!("meshes[{m}].primitives[{p}]"), format!("holds Draco geometry, {REMEDY}")));

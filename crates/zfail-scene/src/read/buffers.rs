@@ -1,9 +1,9 @@
 //! The bytes of the document's buffer views, decompressed.
 //!
-//! In: the schema, the binary chunk and the files that it names. Out: the bytes of every buffer view, each checked to
-//! lie inside its buffer.
+//! In: the schema, the binary chunk and the files that it names. Out: the bytes of any buffer view, checked to lie inside
+//! its buffer when something needs them.
 
-use super::error::{Result, invalid};
+use super::error::{Fault, Result, invalid, misunderstood};
 use super::limits::Budget;
 use super::schema::{Buffer, Root};
 use super::{meshopt, uri};
@@ -13,16 +13,26 @@ use std::path::Path;
 
 pub(super) struct Buffers<'a> {
     buffers: Vec<Cow<'a, [u8]>>,
-    /// Per buffer view, its bytes if they had to be decompressed.
-    decoded: Vec<Option<Vec<u8>>>,
+    /// Per buffer view, if it had to be decompressed.
+    decoded: Vec<Option<Decoded>>,
 }
+
+/// The bytes of a buffer view, or the element in which it is broken, and how.
+type Decoded = std::result::Result<Vec<u8>, (String, String)>;
 
 impl<'a> Buffers<'a> {
     /// Fetches every buffer that is needed, and decompresses the buffer views that are compressed.
-    pub fn open(root: &Root, bin: Option<Cow<'a, [u8]>>, folder: &Path, budget: &Budget) -> Result<Self> {
+    pub fn open(
+        root: &Root,
+        bin: Option<Cow<'a, [u8]>>,
+        folder: &Path,
+        budget: &Budget,
+        notices: &mut Vec<String>,
+    ) -> Result<Self> {
         let mut needed = vec![false; root.buffers.len()];
         for view in &root.buffer_views {
-            needed[view.extensions.meshopt().map_or(view.buffer, |(_, meshopt)| meshopt.buffer)] = true;
+            let buffer = view.extensions.meshopt().map_or(view.buffer, |(_, meshopt)| meshopt.buffer);
+            needed.get_mut(buffer).into_iter().for_each(|needed| *needed = true);
         }
         let mut buffers = Vec::with_capacity(root.buffers.len());
         let mut bin = bin;
@@ -30,14 +40,18 @@ impl<'a> Buffers<'a> {
             // What only stands in for compressed data need not exist.
             let skipped = buffer.is_fallback() && !needed[i];
             let chunk = if i == 0 { bin.take() } else { None };
-            buffers.push(if skipped { Cow::Borrowed([].as_slice()) } else { fetch(i, buffer, chunk, folder, budget)? });
+            let bytes =
+                if skipped { Cow::Borrowed([].as_slice()) } else { fetch(i, buffer, chunk, folder, budget, notices)? };
+            buffers.push(bytes);
         }
         let mut open = Self { buffers, decoded: Vec::new() };
-        let decode = |i: usize| open.decode(root, i, budget);
+        let decode = |i: usize| match open.decode(root, i, budget) {
+            Ok(bytes) => Ok(bytes.map(Ok)),
+            // It may be that nothing needs it.
+            Err(Fault::Invalid { element, problem, .. }) => Ok(Some(Err((element, problem)))),
+            Err(fault) => Err(fault),
+        };
         open.decoded = (0..root.buffer_views.len()).into_par_iter().map(decode).collect::<Result<_>>()?;
-        for view in 0..root.buffer_views.len() {
-            open.view(root, view)?;
-        }
         Ok(open)
     }
 
@@ -51,20 +65,28 @@ impl<'a> Buffers<'a> {
 
     /// The bytes of buffer view `index` of `root`.
     pub fn view(&self, root: &Root, index: usize) -> Result<&[u8]> {
-        if let Some(Some(bytes)) = self.decoded.get(index) {
-            return Ok(bytes);
+        let element = || format!("bufferViews[{index}]");
+        let Some(view) = root.buffer_views.get(index) else {
+            return Err(invalid(element(), format!("is not there: the file has {}", root.buffer_views.len())));
+        };
+        match (self.decoded.get(index), &view.fault) {
+            (Some(Some(Ok(bytes))), _) => Ok(bytes),
+            (Some(Some(Err((element, problem)))), _) => Err(invalid(element, problem)),
+            (_, Some(fault)) => Err(misunderstood(fault)),
+            _ => self.range(view.buffer, view.byte_offset, view.byte_length, &element()),
         }
-        let view = &root.buffer_views[index];
-        self.range(view.buffer, view.byte_offset, view.byte_length, &format!("bufferViews[{index}]"))
     }
 
     /// Supplies the bytes of the buffer view that is added to the document next.
     pub fn push(&mut self, bytes: Vec<u8>) {
-        self.decoded.push(Some(bytes));
+        self.decoded.push(Some(Ok(bytes)));
     }
 
     fn range(&self, buffer: usize, offset: u64, length: u64, element: &str) -> Result<&[u8]> {
-        let bytes = &self.buffers[buffer];
+        let Some(bytes) = self.buffers.get(buffer) else {
+            let problem = format!("refers to buffers[{buffer}], but the file has {}", self.buffers.len());
+            return Err(invalid(element, problem));
+        };
         slice(bytes, offset, length).ok_or_else(|| {
             let problem = format!("covers {length} bytes from {offset}, but buffers[{buffer}] has {}", bytes.len());
             invalid(element, problem)
@@ -78,18 +100,23 @@ fn fetch<'a>(
     chunk: Option<Cow<'a, [u8]>>,
     folder: &Path,
     budget: &Budget,
+    notices: &mut Vec<String>,
 ) -> Result<Cow<'a, [u8]>> {
     let mut bytes: Cow<'a, [u8]> = match (&buffer.uri, chunk) {
         (Some(uri), _) => uri::read(uri, folder, budget, &format!("buffers[{i}].uri"))?.into(),
         (None, Some(chunk)) => chunk,
         (None, None) => return Err(invalid(format!("buffers[{i}]"), "has neither a uri nor a binary chunk")),
     };
-    let length = bytes.len();
+    if (bytes.len() as u64) < buffer.byte_length {
+        // Whether something needs them, the buffer views will show.
+        notices.push(format!(
+            "buffers[{i}].byteLength says {} bytes, but there are {}",
+            buffer.byte_length,
+            bytes.len()
+        ));
+        return Ok(bytes);
+    }
     match &mut bytes {
-        _ if (length as u64) < buffer.byte_length => {
-            let problem = format!("says {} bytes, but there are {length}", buffer.byte_length);
-            return Err(invalid(format!("buffers[{i}].byteLength"), problem));
-        }
         Cow::Borrowed(b) => *b = &b[..buffer.byte_length as usize],
         Cow::Owned(b) => b.truncate(buffer.byte_length as usize),
     }

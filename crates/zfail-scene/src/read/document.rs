@@ -5,7 +5,7 @@
 
 use super::buffers::{Buffers, slice};
 use super::draco;
-use super::error::{Result, invalid};
+use super::error::{Result, invalid, misunderstood};
 use super::limits::Budget;
 use super::schema::{Component, Root};
 use std::borrow::Cow;
@@ -24,6 +24,9 @@ struct Elements<'a> {
     size: usize,
 }
 
+/// Indices, values, and the type of the indices.
+type SparsePart<'a> = (Elements<'a>, Elements<'a>, Component);
+
 impl<'a> Elements<'a> {
     fn get(&self, i: usize) -> &'a [u8] {
         &self.bytes[i * self.stride..][..self.size]
@@ -31,16 +34,17 @@ impl<'a> Elements<'a> {
 }
 
 impl<'a> Document<'a> {
-    /// Decompresses what is compressed, then checks that every buffer view and accessor stays inside.
-    pub fn open(mut root: Root, bin: Option<Cow<'a, [u8]>>, folder: &Path, budget: Budget) -> Result<Self> {
-        let mut buffers = Buffers::open(&root, bin, folder, &budget)?;
-        draco::expand(&mut root, &mut buffers, &budget)?;
-        let document = Self { root, budget, buffers };
-        for accessor in 0..document.root.accessors.len() {
-            document.elements(accessor)?;
-            document.sparse(accessor)?;
-        }
-        Ok(document)
+    /// Decompresses what is compressed. Buffer views and accessors are checked when something needs them.
+    pub fn open(
+        mut root: Root,
+        bin: Option<Cow<'a, [u8]>>,
+        folder: &Path,
+        budget: Budget,
+        notices: &mut Vec<String>,
+    ) -> Result<Self> {
+        let mut buffers = Buffers::open(&root, bin, folder, &budget, notices)?;
+        draco::expand(&mut root, &mut buffers, &budget, notices)?;
+        Ok(Self { root, budget, buffers })
     }
 
     /// The bytes of a buffer view.
@@ -56,8 +60,17 @@ impl<'a> Document<'a> {
         self.locate(view, accessor.byte_offset, accessor.count, size, || format!("accessors[{index}]")).map(Some)
     }
 
+    /// How many elements accessor `index` has, all of whose bytes are there.
+    pub fn checked_count(&self, index: usize) -> Result<u64> {
+        self.check(index).map(|_| self.count(index))
+    }
+
+    fn check(&self, index: usize) -> Result<(Option<Elements<'_>>, Option<SparsePart<'_>>)> {
+        Ok((self.elements(index)?, self.sparse(index)?))
+    }
+
     /// Indices and values of an accessor's sparse part.
-    fn sparse(&self, index: usize) -> Result<Option<(Elements<'_>, Elements<'_>, Component)>> {
+    fn sparse(&self, index: usize) -> Result<Option<SparsePart<'_>>> {
         let accessor = &self.root.accessors[index];
         let Some(sparse) = &accessor.sparse else { return Ok(None) };
         if sparse.count > accessor.count {
@@ -90,7 +103,10 @@ impl<'a> Document<'a> {
         size: usize,
         element: impl Fn() -> String,
     ) -> Result<Elements<'_>> {
-        let bytes = self.view(view)?;
+        let bytes = self.view(view).map_err(|fault| match fault.problem() {
+            Some(problem) => invalid(element(), format!("needs {problem}")),
+            None => fault,
+        })?;
         let stride = self.root.buffer_views[view].byte_stride.unwrap_or(size as u64);
         if stride < size as u64 {
             let problem = format!("is {stride}, less than the {size} bytes of one element of {}", element());
@@ -130,6 +146,11 @@ impl<'a> Document<'a> {
         self.decode(index, 0.0, decode)
     }
 
+    /// How many elements accessor `index` has.
+    pub fn count(&self, index: usize) -> u64 {
+        self.root.accessors[index].count
+    }
+
     /// Accessor `index`, whose elements have `N` unsigned integer components.
     pub fn integers<const N: usize>(&self, index: usize) -> Result<Vec<[u32; N]>> {
         let component = self.root.accessors[index].component_type;
@@ -147,20 +168,24 @@ impl<'a> Document<'a> {
         decode: impl Fn(&[u8]) -> T,
     ) -> Result<Vec<[T; N]>> {
         let accessor = &self.root.accessors[index];
+        if let Some(fault) = &accessor.fault {
+            return Err(misunderstood(fault));
+        }
         // Padded matrices would need their columns taken apart; no attribute is one.
         let step = accessor.component_type.size();
         if accessor.shape.components() != N || accessor.shape.element_size(accessor.component_type) != N * step {
             let problem = format!("is {:?}, but {N} components are needed here", accessor.shape);
             return Err(invalid(format!("accessors[{index}].type"), problem));
         }
+        let (elements, sparse) = self.check(index)?;
         self.budget.charge(accessor.count, size_of::<[T; N]>() as u64, || format!("accessors[{index}].count"))?;
         let element = |bytes: &[u8]| std::array::from_fn(|c| decode(&bytes[c * step..]));
         let count = accessor.count as usize;
-        let mut values = match self.elements(index)? {
+        let mut values = match elements {
             None => vec![[zero; N]; count],
             Some(elements) => (0..count).map(|i| element(elements.get(i))).collect(),
         };
-        if let Some((indices, replacements, component)) = self.sparse(index)? {
+        if let Some((indices, replacements, component)) = sparse {
             let sparse_count = accessor.sparse.as_ref().map_or(0, |s| s.count as usize);
             for i in 0..sparse_count {
                 let target = unsigned(indices.get(i), component);

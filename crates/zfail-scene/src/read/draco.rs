@@ -11,6 +11,7 @@ use super::error::{Result, invalid};
 use super::fence::fenced;
 use super::limits::Budget;
 use super::schema::{Accessor, BufferView, BufferViewExtensions, Component, Draco, Mode, Primitive, Root, Shape};
+use super::validate::moves_vertices;
 use draco_core::geometry_attribute::PointAttribute;
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, Mesh, MeshDecoder, PointIndex};
 use rayon::prelude::*;
@@ -32,10 +33,17 @@ struct Column {
 struct Decoded {
     indices: Column,
     attributes: BTreeMap<String, Column>,
+    /// Attributes that are spared, and why.
+    lost: Vec<(String, String)>,
 }
 
 /// Decodes every compressed primitive of `root` and replaces its accessors.
-pub(super) fn expand(root: &mut Root, buffers: &mut Buffers<'_>, budget: &Budget) -> Result<()> {
+pub(super) fn expand(
+    root: &mut Root,
+    buffers: &mut Buffers<'_>,
+    budget: &Budget,
+    notices: &mut Vec<String>,
+) -> Result<()> {
     let meshes = root.meshes.iter().enumerate();
     let compressed: Vec<(usize, usize, &Draco)> = meshes
         .flat_map(|(m, mesh)| mesh.primitives.iter().enumerate().map(move |(p, primitive)| (m, p, primitive)))
@@ -49,6 +57,10 @@ pub(super) fn expand(root: &mut Root, buffers: &mut Buffers<'_>, budget: &Budget
     };
     let decoded: Vec<(usize, usize, Decoded)> = compressed.par_iter().map(decode).collect::<Result<_>>()?;
     for (m, p, decoded) in decoded {
+        for (name, problem) in decoded.lost {
+            root.meshes[m].primitives[p].attributes.remove(&name);
+            notices.push(format!("meshes[{m}].primitives[{p}].attributes.{name} is left out: {problem}"));
+        }
         let old = &root.meshes[m].primitives[p].attributes;
         let normalized = |name: &String| old.get(name).is_some_and(|&a| root.accessors[a].normalized);
         let columns: Vec<(String, bool, Column)> =
@@ -69,7 +81,14 @@ pub(super) fn expand(root: &mut Root, buffers: &mut Buffers<'_>, budget: &Budget
 fn push(root: &mut Root, buffers: &mut Buffers<'_>, column: Column, normalized: bool) -> usize {
     let byte_length = column.bytes.len() as u64;
     let extensions = BufferViewExtensions::default();
-    root.buffer_views.push(BufferView { buffer: 0, byte_offset: 0, byte_length, byte_stride: None, extensions });
+    root.buffer_views.push(BufferView {
+        buffer: 0,
+        byte_offset: 0,
+        byte_length,
+        byte_stride: None,
+        extensions,
+        fault: None,
+    });
     buffers.push(column.bytes);
     root.accessors.push(Accessor {
         buffer_view: Some(root.buffer_views.len() - 1),
@@ -79,6 +98,7 @@ fn push(root: &mut Root, buffers: &mut Buffers<'_>, column: Column, normalized: 
         count: column.count,
         shape: column.shape,
         sparse: None,
+        fault: None,
     });
     root.accessors.len() - 1
 }
@@ -97,15 +117,18 @@ fn decode(
     let source = buffers.view(root, draco.buffer_view)?;
     let mesh = decode_stream(source, vertices, triangles).map_err(|why| invalid(path, why))?;
     check_counts(root, primitive, draco, mesh.num_points() as u64, vertices, path)?;
-    let attributes = draco.attributes.iter().map(|(name, &id)| {
-        let element = format!("{path}.attributes.{name}");
-        let attribute = mesh
-            .attribute_by_unique_id(id)
-            .ok_or_else(|| invalid(&element, format!("the stream has no attribute with the id {id}")))?;
-        Ok((name.clone(), column(attribute, mesh.num_points()).map_err(|why| invalid(&element, why))?))
-    });
-    let attributes = attributes.collect::<Result<_>>()?;
-    Ok(Decoded { indices: indices(&mesh).map_err(|why| invalid(path, why))?, attributes })
+    let indices = indices(&mesh).map_err(|why| invalid(path, why))?;
+    let (mut attributes, mut lost) = (BTreeMap::new(), Vec::new());
+    for (name, &id) in &draco.attributes {
+        let attribute = mesh.attribute_by_unique_id(id);
+        let attribute = attribute.ok_or_else(|| format!("the stream has no attribute with the id {id}"));
+        match attribute.and_then(|attribute| column(attribute, mesh.num_points())) {
+            Ok(column) => drop(attributes.insert(name.clone(), column)),
+            Err(why) if moves_vertices(name) => return Err(invalid(format!("{path}.attributes.{name}"), why)),
+            Err(why) => lost.push((name.clone(), why)),
+        }
+    }
+    Ok(Decoded { indices, attributes, lost })
 }
 
 /// How many vertices and triangles the accessors let the stream have.
@@ -155,7 +178,8 @@ fn check_counts(
     }
     let beside = primitive.attributes.iter().filter(|(name, _)| !draco.attributes.contains_key(*name));
     let morphs = primitive.targets.iter().flatten();
-    match beside.chain(morphs).find(|(_, accessor)| root.accessors[**accessor].count != found) {
+    let mut needed = beside.chain(morphs).filter(|(name, _)| moves_vertices(name));
+    match needed.find(|(_, accessor)| root.accessors[**accessor].count != found) {
         None => Ok(()),
         Some((name, accessor)) => {
             let count = root.accessors[*accessor].count;

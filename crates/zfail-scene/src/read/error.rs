@@ -22,6 +22,9 @@ pub enum Fault {
     /// The file itself cannot be read.
     #[error("cannot be read: {0}")]
     Unreadable(io::Error),
+    /// A GLB container that is damaged.
+    #[error("the GLB container is damaged: {0}; download or export the file again")]
+    Damaged(String),
     /// Neither a GLB container nor a JSON document.
     #[error("is not a glTF 2.0 file: {0}; the other formats that are read end in .obj, .stl or .ply")]
     NotGltf(String),
@@ -36,22 +39,26 @@ pub enum Fault {
         remedy: &'static str,
     },
     /// The JSON breaks the specification in a way that leaves no doubt-free repair.
-    #[error("{element}: {problem}; export the file again, or see what the Khronos glTF validator says about it")]
+    #[error("{element}: {problem}; {remedy}")]
     Invalid {
         /// JSON path.
         element: String,
         /// What is wrong.
         problem: String,
+        /// What to do about it.
+        remedy: &'static str,
     },
     /// An external file that the document names is missing, unreadable or out of bounds.
-    #[error("{element}: cannot read `{uri}`: {problem}; put the file there, or export as one .glb")]
+    #[error("{element}: cannot read `{uri}`: {problem}; {remedy}")]
     Resource {
         /// JSON path.
         element: String,
-        /// The reference as written, shortened.
+        /// The name of the file, or the begin of a data URI.
         uri: String,
         /// What went wrong.
         problem: String,
+        /// What to do about it.
+        remedy: &'static str,
     },
     /// The file has no variant of its materials as asked for.
     #[error("there is no variant '{wanted}'; there are: {there_are}")]
@@ -73,8 +80,36 @@ pub enum Fault {
 
 pub(super) type Result<T> = std::result::Result<T, Fault>;
 
+impl Fault {
+    /// A file of the generation before glTF 2.0.
+    pub(super) fn old(version: &str) -> Self {
+        let problem = format!("this is glTF {version}, an older format with another structure; only 2.x can be read");
+        refused("asset.version", problem, "convert the file, for example with `gltf-pipeline -i OLD -o NEW.glb`")
+    }
+
+    /// What is wrong and where, if that is a part of the JSON or of its data.
+    pub(super) fn problem(&self) -> Option<String> {
+        match self {
+            Self::Invalid { element, problem, .. } => Some(format!("{element}: {problem}")),
+            _ => None,
+        }
+    }
+}
+
+/// A fault of the file that its exporter has to mend.
 pub(super) fn invalid(element: impl AsRef<str>, problem: impl AsRef<str>) -> Fault {
-    Fault::Invalid { element: one_line(element.as_ref()), problem: one_line(problem.as_ref()) }
+    refused(element, problem, "export the file again, or see what the Khronos glTF validator says about it")
+}
+
+/// What the reader has left where a part of the JSON could not be understood.
+pub(super) fn misunderstood(fault: &str) -> Fault {
+    let (element, problem) = fault.split_once(": ").unwrap_or(("the JSON", fault));
+    invalid(element, problem)
+}
+
+/// A fault with another remedy.
+pub(super) fn refused(element: impl AsRef<str>, problem: impl AsRef<str>, remedy: &'static str) -> Fault {
+    Fault::Invalid { element: one_line(element.as_ref()), problem: one_line(problem.as_ref()), remedy }
 }
 
 pub(super) fn malformed(element: impl AsRef<str>, problem: impl AsRef<str>, remedy: &'static str) -> Fault {

@@ -30,6 +30,7 @@ pub fn extension_treatment(name: &str) -> Treatment {
         | "KHR_materials_variants"
         | "KHR_mesh_quantization"
         | "KHR_meshopt_compression"
+        | "KHR_node_visibility"
         | "KHR_texture_basisu"
         | "KHR_texture_transform"
         | "KHR_xmp"
@@ -45,6 +46,7 @@ pub fn extension_treatment(name: &str) -> Treatment {
         "KHR_materials_dispersion" => Ignored("light is not split into colours"),
         "KHR_materials_iridescence" => Ignored("reflections do not change colour with the angle"),
         "KHR_materials_diffuse_transmission" => Ignored("no light is scattered through the surface"),
+        "KHR_animation_pointer" => Ignored("only nodes and morph weights move"),
         name if name.starts_with("KHR_materials_") => Ignored("materials are shown without it"),
         _ => Ignored("what it adds is missing"),
     }

@@ -4,16 +4,17 @@
 
 use super::animations::{Motion, target_count};
 use super::document::Document;
-use super::error::{Result, invalid};
-use super::graph::{Graph, Visit, affine};
+use super::error::{Result, invalid, refused};
+use super::graph::{Graph, Visit};
 use super::mesh::{self, Built, Pose};
 use super::schema::Instancing;
+use super::skins::{self, Skin};
 use crate::animate::MAX_COORDINATE;
-use crate::deform::{Body, Frame, Joint};
+use crate::deform::{Body, Frame};
 use crate::placement::{Rank, flatten, invertible, is_moderate, rank, unit_quaternion};
 use glam::{DAffine3, DQuat, DVec3};
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::ops::Range;
 use zfail_plan::scene::{Instance, Scene};
 
@@ -26,7 +27,7 @@ pub(super) fn read(
     scene: &mut Scene,
 ) -> Result<Vec<Range<usize>>> {
     let (poses, pose_of_visit) = poses(document, graph, motion)?;
-    let skins = skins(document, graph, motion)?;
+    let skins = skins::read(document, graph, motion, &mut scene.notices)?;
     let built: Vec<Built> = poses
         .par_iter()
         .map(|pose| {
@@ -35,16 +36,19 @@ pub(super) fn read(
             mesh::build(document, pose, skin.map(|skin| &skin.at_rest[..]), bends, &scene.materials)
         })
         .collect::<Result<_>>()?;
-    check_unused(document, &poses)?;
     scene.notices.extend(built.iter().flat_map(|b| b.notices.iter().cloned()));
 
     let shown = vec![Vec::new(); built.len()];
     let mut placer = Placer { document, motion, scene, scene_mesh: vec![None; built.len()], shown, built };
+    let mut skinned = FxHashSet::default();
     let mut first_instance = Vec::with_capacity(graph.visits.len() + 1);
-    for (visit, pose) in graph.visits.iter().zip(pose_of_visit) {
+    for (v, (visit, pose)) in graph.visits.iter().zip(pose_of_visit).enumerate() {
         first_instance.push(placer.scene.instances.len());
-        if let Some(pose) = pose {
-            placer.place_node(visit, graph.world_from_node[visit.node], pose, poses[pose].skin.is_some())?;
+        let Some(pose) = pose else { continue };
+        let is_skinned = poses[pose].skin.is_some();
+        // A skin puts its mesh in the same place wherever the node hangs.
+        if !is_skinned || skinned.insert(visit.node) {
+            placer.place_node(visit, placer.motion.rig_node[v], pose, is_skinned)?;
         }
     }
     first_instance.push(placer.scene.instances.len());
@@ -59,7 +63,7 @@ fn poses(document: &Document<'_>, graph: &Graph, motion: &Motion) -> Result<(Vec
     let target_counts: Vec<usize> = meshes.iter().map(target_count).collect();
     let pose = |visit: &Visit| {
         let node = &document.root.nodes[visit.node];
-        let Some(mesh) = node.mesh else { return Ok(None) };
+        let Some(mesh) = node.mesh.filter(|_| visit.is_visible) else { return Ok(None) };
         let weights = node.weights.as_ref().unwrap_or(&meshes[mesh].weights);
         let weights = &weights[..target_counts[mesh].min(weights.len())];
         document.budget.charge(weights.len() as u64, 16, || format!("nodes[{}].weights", visit.node))?;
@@ -74,55 +78,6 @@ fn poses(document: &Document<'_>, graph: &Graph, motion: &Motion) -> Result<(Vec
     let index: FxHashMap<&Pose, usize> = poses.iter().enumerate().map(|(i, pose)| (pose, i)).collect();
     let of_visit = of_visit.iter().map(|pose| pose.as_ref().map(|pose| index[pose])).collect();
     Ok((poses, of_visit))
-}
-
-/// The joints of a skin.
-struct Skin {
-    /// From mesh space to the world, in the rest pose.
-    at_rest: Vec<DAffine3>,
-    joints: Vec<Joint>,
-}
-
-impl Skin {
-    fn moves(&self) -> bool {
-        self.joints.iter().any(|joint| matches!(joint, Joint::Moving { .. }))
-    }
-}
-
-fn skins(document: &Document<'_>, graph: &Graph, motion: &Motion) -> Result<Vec<Skin>> {
-    let skins = document.root.skins.iter().enumerate().map(|(s, skin)| {
-        let size = (size_of::<DAffine3>() * 2 + size_of::<Joint>()) as u64;
-        document.budget.charge(skin.joints.len() as u64, size, || format!("skins[{s}].joints"))?;
-        let inverse_binds = match skin.inverse_bind_matrices {
-            None => vec![DAffine3::IDENTITY; skin.joints.len()],
-            Some(accessor) => inverse_binds(document, accessor, &format!("skins[{s}].inverseBindMatrices"))?,
-        };
-        let joint = |(&node, node_from_mesh): (&usize, DAffine3)| {
-            let at_rest = graph.world_from_node[node] * node_from_mesh;
-            let moving = motion.rig_node[node].map(|node| Joint::Moving { node, node_from_mesh });
-            (at_rest, moving.unwrap_or(Joint::Fixed(at_rest)))
-        };
-        let (at_rest, joints) = skin.joints.iter().zip(inverse_binds).map(joint).unzip();
-        Ok(Skin { at_rest, joints })
-    });
-    skins.collect()
-}
-
-fn inverse_binds(document: &Document<'_>, accessor: usize, path: &str) -> Result<Vec<DAffine3>> {
-    let matrices = document.floats::<16>(accessor)?;
-    let matrix = |(j, m): (usize, &[f32; 16])| {
-        affine(&m.map(f64::from)).filter(is_moderate).ok_or_else(|| {
-            let problem = format!("matrix {j} (accessors[{accessor}]) is not finite, or its last row is not 0 0 0 1");
-            invalid(path, problem)
-        })
-    };
-    matrices.iter().enumerate().map(matrix).collect()
-}
-
-fn check_unused(document: &Document<'_>, poses: &[Pose]) -> Result<()> {
-    let mut used = vec![false; document.root.meshes.len()];
-    poses.iter().for_each(|pose| used[pose.mesh] = true);
-    (0..used.len()).filter(|&m| !used[m]).try_for_each(|m| mesh::check_unused(document, m))
 }
 
 struct Placer<'a> {
@@ -147,12 +102,13 @@ struct Site<'a> {
 }
 
 impl Placer<'_> {
-    fn place_node(&mut self, visit: &Visit, world_from_node: DAffine3, pose: usize, skinned: bool) -> Result<()> {
+    /// `rig_node` is the node's place in the rig, if it moves.
+    fn place_node(&mut self, visit: &Visit, rig_node: Option<usize>, pose: usize, skinned: bool) -> Result<()> {
         let node = &self.document.root.nodes[visit.node];
         let name = node.name.clone().unwrap_or_else(|| format!("node {}", visit.node));
         // Skinning has taken the mesh to the world; its own node's transform does not count.
         let (world_from_node, rig_node) =
-            if skinned { (DAffine3::IDENTITY, None) } else { (world_from_node, self.motion.rig_node[visit.node]) };
+            if skinned { (DAffine3::IDENTITY, None) } else { (visit.world_from_node, rig_node) };
         let site = Site { visit, world_from_node, rig_node, pose };
         match &node.extensions.instancing {
             None => self.place(name, &site, &DAffine3::IDENTITY),
@@ -176,7 +132,8 @@ impl Placer<'_> {
         let world_from_object = site.world_from_node * node_from_object;
         let reach = bounds.transformed(&world_from_object);
         if !(reach.min.abs().max_element() <= MAX_COORDINATE && reach.max.abs().max_element() <= MAX_COORDINATE) {
-            return Err(invalid(element(), format!("places its mesh more than {MAX_COORDINATE:e} m from the origin")));
+            let problem = format!("places its mesh more than {MAX_COORDINATE:e} m from the origin");
+            return Err(refused(element(), problem, "move or scale the scene"));
         }
         let bends = !self.built[site.pose].sections.is_empty();
         let (mesh, world_from_object) = match (rank(&world_from_object.matrix3), site.rig_node) {

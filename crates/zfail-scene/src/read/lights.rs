@@ -33,10 +33,15 @@ pub(super) fn read_lights(
             held_by_name.entry(name).or_default().push(held.clone());
         }
     }
-    for visit in &graph.visits {
+    for (v, visit) in graph.visits.iter().enumerate().filter(|(_, visit)| visit.is_visible) {
         let node = &root.nodes[visit.node];
         let Some(reference) = &node.extensions.light else { continue };
         let source = &lights.lights[reference.light];
+        let Some(source_kind) = source.kind else {
+            let element = format!("extensions.KHR_lights_punctual.lights[{}]", reference.light);
+            scene.notices.push(format!("{element} is of no known type: left out"));
+            continue;
+        };
         let name = source.name.clone().or_else(|| node.name.clone());
         let name = name.unwrap_or_else(|| format!("light {}", scene.lights.len()));
         let mut excluded = Vec::new();
@@ -52,14 +57,14 @@ pub(super) fn read_lights(
         }
         excluded.sort_unstable();
         excluded.dedup();
-        let kind = light_kind(source, &graph.world_from_node[visit.node]);
-        if let Some(rig_node) = motion.rig_node[visit.node] {
+        let kind = light_kind(source, source_kind, &visit.world_from_node);
+        if let Some(rig_node) = motion.rig_node[v] {
             motion.rig.carry_light(scene.lights.len(), rig_node, DAffine3::IDENTITY, kind);
         }
         let element = format!("nodes[{}].extras", visit.node);
         let mut shape = shape(&node.extras, &kind, textures, &element, &mut scene.notices);
         budget.charge(shape.falloff.len() as u64, size_of::<f32>() as u64, || format!("{element}.falloff"))?;
-        shape.axes = rigid(&graph.world_from_node[visit.node]).matrix3;
+        shape.axes = rigid(&visit.world_from_node).matrix3;
         scene.lights.push(Light {
             name,
             kind,
@@ -137,10 +142,10 @@ fn positive(x: f64) -> f32 {
     x.clamp(0.0, 1e30) as f32
 }
 
-fn light_kind(light: &schema::Light, world_from_node: &DAffine3) -> LightKind {
+fn light_kind(light: &schema::Light, kind: LightType, world_from_node: &DAffine3) -> LightKind {
     let (position, direction) = (DVec3::ZERO, DVec3::NEG_Z);
     let range = light.range.filter(|&range| range > 0.0).unwrap_or(f64::INFINITY);
-    let at_origin = match light.kind {
+    let at_origin = match kind {
         LightType::Point => LightKind::Point { position, range },
         LightType::Directional => LightKind::Directional { direction },
         LightType::Spot => {
@@ -154,7 +159,7 @@ fn light_kind(light: &schema::Light, world_from_node: &DAffine3) -> LightKind {
 
 /// Adds the default scene's cameras to `scene`, and hangs those that move on the rig.
 pub(super) fn read_cameras(root: &Root, graph: &Graph, motion: &mut Motion, scene: &mut Scene) {
-    for visit in &graph.visits {
+    for (v, visit) in graph.visits.iter().enumerate() {
         let node = &root.nodes[visit.node];
         let Some(index) = node.camera else { continue };
         let source = &root.cameras[index];
@@ -164,8 +169,8 @@ pub(super) fn read_cameras(root: &Root, graph: &Graph, motion: &mut Motion, scen
             (None, None) => continue,
         };
         let name = source.name.clone().or_else(|| node.name.clone());
-        let world_from_view = rigid(&graph.world_from_node[visit.node]);
-        if let Some(rig_node) = motion.rig_node[visit.node] {
+        let world_from_view = rigid(&visit.world_from_node);
+        if let Some(rig_node) = motion.rig_node[v] {
             motion.rig.carry_camera(scene.cameras.len(), rig_node, DAffine3::IDENTITY, world_from_view);
         }
         let name = name.unwrap_or_else(|| format!("camera {}", scene.cameras.len()));
@@ -181,7 +186,9 @@ mod tests {
     fn light_parameters_are_clamped() {
         let light = |json: &str| serde_json::from_str::<schema::Light>(json).unwrap();
         let spot = light(r#"{"type": "spot", "spot": {"innerConeAngle": 3, "outerConeAngle": 2}, "range": -1}"#);
-        let LightKind::Spot { inner, outer, range, direction, .. } = light_kind(&spot, &DAffine3::IDENTITY) else {
+        let LightKind::Spot { inner, outer, range, direction, .. } =
+            light_kind(&spot, LightType::Spot, &DAffine3::IDENTITY)
+        else {
             panic!()
         };
         assert!(inner < outer && outer == FRAC_PI_2 && range == f64::INFINITY && direction == DVec3::NEG_Z);

@@ -1,5 +1,6 @@
 //! Materials and textures, and what becomes of the extensions that refine them ([`super::extension_treatment`]).
 
+use super::images;
 use super::schema::{self, AlphaMode as Mode, Root, TextureInfo};
 use zfail_plan::scene::{
     AlphaMode, Clearcoat, Filter, Material, Scene, Sheen, Specular, SpecularGlossiness, Texture, TextureRef,
@@ -8,27 +9,15 @@ use zfail_plan::scene::{
 
 /// The document's textures as the scene holds them. `images` are the scene's, by the document's index, without those
 /// that could not be decoded. Returns the scene's textures, and the index of each of the document's among them.
-pub(super) fn textures(
-    root: &Root,
-    images: &[Option<usize>],
-    notices: &mut Vec<String>,
-) -> (Vec<Texture>, Vec<Option<usize>>) {
+pub(super) fn textures(root: &Root, images: &[Option<usize>]) -> (Vec<Texture>, Vec<Option<usize>>) {
     let mut textures = Vec::new();
-    let mut unreadable = 0;
     let index = root.textures.iter().map(|texture| {
-        let Some(image) = texture.images().find_map(|image| images[image]) else {
-            unreadable += 1;
-            return None;
-        };
+        let image = texture.images().find_map(|image| images[image])?;
         let sampler = texture.sampler.map(|s| &root.samplers[s]);
         textures.push(sampled(image, sampler.unwrap_or(&schema::Sampler::default())));
         Some(textures.len() - 1)
     });
     let index = index.collect();
-    if unreadable > 0 {
-        let plural = if unreadable == 1 { "" } else { "s" };
-        notices.push(format!("{unreadable} texture{plural} without a readable image: shown by plain factors"));
-    }
     (textures, index)
 }
 
@@ -67,7 +56,7 @@ pub(super) fn materials(root: &Root, textures: &[Option<usize>], scene: &mut Sce
         .enumerate()
         .map(|(i, source)| {
             let name = source.name.clone().unwrap_or_else(|| format!("material {i}"));
-            Converter { name: &name, scene, textures, notices: &mut notices }.convert(source)
+            Converter { name: &name, root, scene, textures, notices: &mut notices }.convert(source)
         })
         .collect();
     scene.notices = notices;
@@ -76,6 +65,7 @@ pub(super) fn materials(root: &Root, textures: &[Option<usize>], scene: &mut Sce
 
 struct Converter<'a> {
     name: &'a str,
+    root: &'a Root,
     scene: &'a Scene,
     textures: &'a [Option<usize>],
     notices: &'a mut Vec<String>,
@@ -85,20 +75,33 @@ impl Converter<'_> {
     fn convert(&mut self, source: &schema::Material) -> Material {
         let pbr = &source.pbr_metallic_roughness;
         let strength = source.extensions.emissive_strength.emissive_strength;
+        let glossy = source.extensions.specular_glossiness.as_deref();
+        let base = glossy.map_or(&pbr.base_color_texture, |glossy| &glossy.diffuse_texture);
+        let base_color_texture = self.texture(base.as_ref());
+        let metallic_roughness_texture = self.texture(pbr.metallic_roughness_texture.as_ref());
+        let emissive_texture = self.texture(source.emissive_texture.as_ref());
+        // These textures mostly take away: of a metal most of it, of a glow all but a spot. Without them, the factors alone
+        // would turn a surface into black metal, or make all of it glow.
+        let metallic = if self.has_lost(&pbr.metallic_roughness_texture) { 0.0 } else { pbr.metallic_factor };
+        let strength = if self.has_lost(&source.emissive_texture) { 0.0 } else { strength };
         let mut material = Material {
             name: self.name.into(),
             base_color: pbr.base_color_factor.map(unit),
-            base_color_texture: self.texture(pbr.base_color_texture.as_ref()),
-            metallic: unit(pbr.metallic_factor),
+            base_color_texture,
+            metallic: unit(metallic),
             roughness: unit(pbr.roughness_factor),
-            metallic_roughness_texture: self.texture(pbr.metallic_roughness_texture.as_ref()),
+            metallic_roughness_texture,
             normal_texture: self.texture(source.normal_texture.as_ref()),
             normal_scale: source.normal_texture.as_ref().map_or(1.0, |t| bounded(t.scale)),
             occlusion_texture: self.texture(source.occlusion_texture.as_ref()),
             occlusion_strength: source.occlusion_texture.as_ref().map_or(1.0, |t| unit(t.strength)),
             emissive: source.emissive_factor.map(|e| bounded(e * strength).max(0.0)),
-            emissive_texture: self.texture(source.emissive_texture.as_ref()),
+            emissive_texture,
             alpha: match source.alpha_mode {
+                Mode::Mask if self.has_lost(base) => {
+                    self.note("its mask is gone with the texture: shown opaque");
+                    AlphaMode::Opaque
+                }
                 Mode::Opaque => AlphaMode::Opaque,
                 Mode::Mask => AlphaMode::Mask(bounded(source.alpha_cutoff.unwrap_or(0.5))),
                 Mode::Blend => AlphaMode::Blend,
@@ -111,9 +114,8 @@ impl Converter<'_> {
             sheen: source.extensions.sheen.as_deref().and_then(|s| self.sheen(s)),
             transmission: self.transmission(&source.extensions),
         };
-        if let Some(glossy) = &source.extensions.specular_glossiness {
+        if let Some(glossy) = glossy {
             material.base_color = glossy.diffuse_factor.map(unit);
-            material.base_color_texture = self.texture(glossy.diffuse_texture.as_ref());
             material.metallic_roughness_texture = None;
             material.specular_glossiness = Some(SpecularGlossiness {
                 color: glossy.specular_factor.map(unit),
@@ -169,6 +171,10 @@ impl Converter<'_> {
     fn transmission(&mut self, extensions: &schema::MaterialExtensions) -> Option<Transmission> {
         let source = extensions.transmission.as_deref()?;
         let share = unit(source.transmission_factor);
+        if share > 0.0 && self.has_lost(&source.transmission_texture) {
+            self.note("where it lets light through is lost with the texture: shown opaque");
+            return None;
+        }
         let texture = self.texture(source.transmission_texture.as_ref());
         let mean = share * texture.map_or(1.0, |texture| self.mean_red(texture));
         if mean < 0.5 {
@@ -188,7 +194,10 @@ impl Converter<'_> {
 
     fn texture(&mut self, info: Option<&TextureInfo>) -> Option<TextureRef> {
         let info = info?;
-        let texture = self.textures[info.index]?;
+        let Some(texture) = self.textures.get(info.index).copied().flatten() else {
+            self.note_lost(info.index);
+            return None;
+        };
         let transform = info.extensions.transform.as_ref();
         let set = transform.and_then(|t| t.tex_coord).unwrap_or(info.tex_coord);
         let uv_set = if set <= 1 {
@@ -200,6 +209,17 @@ impl Converter<'_> {
         let identity = TextureRef::new(texture);
         let uv_from_mesh = transform.map_or(identity.uv_from_mesh, uv_from_mesh);
         Some(TextureRef { uv_set, uv_from_mesh, ..identity })
+    }
+
+    /// Whether there should be a texture whose image cannot be read.
+    fn has_lost(&self, info: &Option<TextureInfo>) -> bool {
+        info.as_ref().is_some_and(|info| self.textures.get(info.index).copied().flatten().is_none())
+    }
+
+    fn note_lost(&mut self, texture: usize) {
+        let images = self.root.textures.get(texture).and_then(|texture| texture.images().last());
+        let name = images.map_or_else(|| format!("texture {texture}"), |i| images::name(&self.root.images[i], i));
+        self.note(&format!("shown by plain factors instead of \"{name}\", which cannot be read"));
     }
 
     fn note(&mut self, what: &str) {
@@ -258,13 +278,15 @@ mod tests {
                 "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 4}, "KHR_materials_unlit": {}}}"#,
         );
         assert_eq!(m.base_color, [1.0, 0.5, 0.0, 1.0]);
-        assert_eq!((m.metallic, m.roughness), (1.0, 0.25));
+        assert_eq!((m.metallic, m.roughness), (0.0, 0.25), "what would say where there is metal cannot be read");
         assert_eq!(m.base_color_texture, Some(TextureRef { uv_set: 1, ..TextureRef::new(1) }));
         assert_eq!(m.metallic_roughness_texture, None, "its image could not be read");
         assert_eq!((m.normal_scale, m.occlusion_strength), (0.5, 0.75));
         assert_eq!(m.emissive, [4.0, 0.0, 2.0]);
         assert_eq!(m.alpha, AlphaMode::Mask(0.5));
-        assert!(m.double_sided && m.unlit && notices.is_empty());
+        assert!(m.double_sided && m.unlit);
+        let lost = "material \"m\": shown by plain factors instead of \"texture 1\", which cannot be read";
+        assert_eq!(notices, [lost]);
     }
 
     #[test]

@@ -4,9 +4,9 @@
 //! origin, the translation that puts it back, and if it bends what other poses are made from.
 
 use super::document::Document;
-use super::error::{Result, invalid};
+use super::error::{Result, refused};
 use super::schema::{self, Mode};
-use super::surface::{Surface, read_triangles};
+use super::surface::{Losses, Surface};
 use super::{pose, shading};
 use crate::animate::MAX_COORDINATE;
 use crate::deform::{Section, alike};
@@ -64,20 +64,10 @@ pub(super) fn build(
     if mesh.positions.iter().flatten().any(|&x| f64::from(x).abs() > MAX_COORDINATE) || origin.length() > MAX_COORDINATE
     {
         let problem = format!("reaches more than {MAX_COORDINATE:e} m from its origin");
-        return Err(invalid(format!("meshes[{}]", pose.mesh), problem));
+        return Err(refused(format!("meshes[{}]", pose.mesh), problem, "scale it down"));
     }
     let bounds = mesh.bounds();
     Ok(Built { mesh, origin, bounds, sections, notices })
-}
-
-/// Checks the indices of a mesh that no node uses, as if it were built.
-pub(super) fn check_unused(document: &Document<'_>, mesh: usize) -> Result<()> {
-    for (j, primitive) in document.root.meshes[mesh].primitives.iter().enumerate() {
-        if let Some(&positions) = primitive.attributes.get("POSITION") {
-            read_triangles(document, primitive, positions, &format!("meshes[{mesh}].primitives[{j}]"))?;
-        }
-    }
-    Ok(())
 }
 
 struct Assembly<'a> {
@@ -101,11 +91,17 @@ struct Counts {
     unskinned: usize,
     normals: usize,
     attributes: usize,
+    contradictions: usize,
+    losses: Losses,
 }
 
 impl Counts {
     fn notices(&self, name: &str) -> Vec<String> {
-        let count = |n: usize, thing: &str| format!("{n} {thing}{}", if n == 1 { "" } else { "s" });
+        let count = |n: usize, thing: &str| match (n, thing) {
+            (1, _) => format!("1 {thing}"),
+            (_, "index") => format!("{n} indices"),
+            _ => format!("{n} {thing}s"),
+        };
         [
             (self.no_triangles, "primitive", "of points or lines: not drawn"),
             (self.no_positions, "primitive", "without POSITION: not drawn"),
@@ -113,10 +109,15 @@ impl Counts {
             (self.unskinned, "primitive", "of a skinned mesh without joints: left in the mesh's own space"),
             (self.normals, "vertex normal", "without a direction: replaced"),
             (self.attributes, "texture coordinates or colour", "that are not finite: replaced"),
+            (self.losses.nowhere, "triangle", "with a vertex that is not finite or has no joint: left out"),
+            (self.losses.beyond, "triangle", "with a vertex that is not there: left out"),
+            (self.losses.restarts, "index", "with the forbidden restart value: a new strip or fan begins"),
+            (self.contradictions, "primitive", "whose normals disagree with its triangles: it may be shaded wrong"),
         ]
         .into_iter()
         .filter(|(n, ..)| *n > 0)
         .map(|(n, thing, what)| format!("mesh \"{name}\": {} {what}", count(n, thing)))
+        .chain(self.losses.attributes.iter().map(|lost| format!("mesh \"{name}\": {lost}")))
         .collect()
     }
 }
@@ -134,26 +135,32 @@ impl<'a> Assembly<'a> {
         };
         if matches!(primitive.mode, Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) {
             self.counts.no_triangles += 1;
-            // The indices must be sound all the same.
-            return read_triangles(self.document, primitive, positions, path).map(drop);
+            return Ok(());
         }
         let corners = primitive.indices.unwrap_or(positions);
         if primitive.mode == Mode::Triangles && !self.document.root.accessors[corners].count.is_multiple_of(3) {
             self.counts.remainders += 1;
         }
 
-        let count = self.document.root.accessors[positions].count;
+        let count = self.document.checked_count(positions)?;
         self.document.budget.charge(count, VERTEX_COST, || path.into())?;
-        let mut surface = Surface::read(self.document, primitive, positions, path)?;
+        let losses = &mut self.counts.losses;
+        let mut surface = Surface::read(self.document, primitive, positions, path, losses)?;
         let mut section = Section { flat: surface.normals.is_none(), ..Section::default() };
+        let mut broken: Vec<bool> = surface.positions.iter().map(|p| !p.is_finite()).collect();
         let weight = |t: usize| self.weights.get(t).copied().unwrap_or(0.0);
-        section.targets = pose::targets(self.document, primitive, |t| self.bends || weight(t) != 0.0)?;
+        let wanted = |t: usize| self.bends || weight(t) != 0.0;
+        section.targets = pose::targets(self.document, primitive, path, &mut broken, wanted)?;
         if let Some(joints) = self.joints {
-            section.influences = pose::influences(self.document, primitive, joints.len(), path)?;
+            section.influences = pose::influences(self.document, primitive, joints.len(), path, &mut broken)?;
             self.counts.unskinned += usize::from(section.influences.is_none());
+        }
+        if broken.contains(&true) {
+            section.gather(&surface.remove(&broken, losses));
         }
         let normals = match surface.normals.take() {
             Some(mut normals) => {
+                self.counts.contradictions += usize::from(shading::contradicts(&surface, &normals));
                 self.counts.normals += shading::mend_normals(&surface, &mut normals);
                 normals
             }
@@ -196,7 +203,8 @@ impl<'a> Assembly<'a> {
         let (normals, tangents) = (&mut mesh.normals[end - count..], &mut mesh.tangents[end - count..]);
         section.pose(self.weights, self.joints.unwrap_or_default(), positions, normals, tangents);
         if let Some(v) = positions.iter().position(|p| !p.is_finite()) {
-            return Err(invalid(path, format!("vertex {v}: its morph targets or joints take it to infinity")));
+            let problem = format!("vertex {v}: its morph targets or joints take it to infinity");
+            return Err(refused(path, problem, "give it smaller weights, or its joints smaller transforms"));
         }
         let [uv0, uv1] = surface.uv.map(|uv| uv.unwrap_or_else(|| vec![[0.0; 2]; count]));
         mesh.uv0.extend(uv0);

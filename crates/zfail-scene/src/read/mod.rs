@@ -1,23 +1,38 @@
 //! glTF 2.0 files to scenes; .obj, .stl and .ply files too.
 //!
-//! Data flow one way: `container` (bytes to JSON and binary chunk) -> `schema` (typed JSON) -> `extensions` and
-//! `validate` (nothing is trusted before) -> `variants` -> `document` (`buffers` with `meshopt`, `draco`, then accessors) -> `images`
-//! with `ktx`, `materials` -> `graph` (world transforms) -> `animations` -> `surface` -> `shading` -> `pose` -> `mesh`
-//! -> `instances`, `lights`. The other formats, `obj`, `stl` and `ply`, become a glTF document first (`plain`).
+//! Data flow one way: `container` (bytes to JSON and binary chunk) -> `json` (to the types of `schema`) -> `extensions`,
+//! `variants` -> `graph` from its `roots` (what is drawn, and where) -> `validate` (no index is trusted before) -> `document`
+//! (`buffers` with `meshopt`, `draco`, then accessors) -> `images` with `ktx`, `materials` -> `animations` -> `surface` ->
+//! `shading` -> `pose` -> `mesh` -> `instances`, `lights`. The other formats, `obj` with `mtl`, `stl` and `ply`, become a glTF document first (`plain`).
 //!
 //! Whatever the bytes are, the result is a scene that satisfies the scene types' invariants or a [`LoadError`]; what
 //! was repaired or left out is in [`Scene::notices`].
 //!
+//! # What is not looked at
+//! Whatever nothing in the scene to draw uses: other scenes and their nodes, what hidden nodes hold, and meshes, skins,
+//! accessors and buffer views that are left over. Broken ones do no harm.
+//!
 //! # Repairs
+//! What is there is loaded, with a notice that says what was wrong; an error is only what cannot be drawn truthfully.
 //! - Left out: points and lines, primitives without positions, what remains of a triangle list after the last whole
-//!   triangle, meshes that a node's scale shrinks to a line or a point, images other than PNG, JPEG, WebP and
-//!   KTX 2.0 or damaged inside, what [`extension_treatment`] says is ignored, animations of what extensions add and of
-//!   nodes that have a matrix.
+//!   triangle, triangles with vertices that are not there, not finite, or moved by joints that are not there, meshes that a
+//!   node's scale shrinks to a line or a point, images that are missing, unreadable, too large or of other formats than PNG,
+//!   JPEG, WebP and KTX 2.0, normals, tangents, texture coordinates and colours that cannot be read, cameras and lights
+//!   that make no sense, what [`extension_treatment`] says is ignored, animations of what extensions add and of nodes that
+//!   have a matrix, channels that move something a second time or whose data are broken, and any optional part of the JSON
+//!   that is not of its type.
 //! - Replaced: missing normals (flat ones, on vertices of their own) and those without a direction, texture
-//!   coordinates and colours that are not finite, rotations without length, joint weights that do not add up to 1.
+//!   coordinates and colours that are not finite, rotations without length, joint weights that do not add up to 1, inverse
+//!   bind matrices of zeros (the identity). Textures without a readable image: by plain factors, but without metal or glow
+//!   where the texture was to confine these, and opaque where it was to mask or to let light through.
+//! - Sorted: key frames.
+//! - Chosen: all nodes where the file has no scene, or one that names none. A node that hangs below two others is drawn
+//!   below both; one that the scene lists beside its parent is drawn below it, once.
 //! - Approximated: materials, as [`extension_treatment`] says of each extension.
-//! - Tolerated: a byte order mark, misaligned accessors, missing bounds of accessors, bytes after the end, a mesh or
-//!   a skin that nothing uses, key frames before time 0 and two at the same time.
+//! - Tolerated: text that is nearly JSON, byte order marks, chunks and accessors that are not aligned, missing bounds of
+//!   accessors, the restart value as a vertex in lists of triangles, lengths that promise more than anything needs, bytes
+//!   after the end, key frames before time 0 and two at the same time.
+//! - Told, but drawn as it is: normals that disagree with the triangles.
 //! - Baked into meshes of their own, in world space: skins (at rest, until an animation bends them) and meshes that their
 //!   node flattens into a plane.
 //! - Moved: a mesh far from its own origin, exactly, with the translation in its instances.
@@ -29,6 +44,7 @@
 //!   the fallback, which need not exist), KHR_mesh_quantization, EXT_mesh_gpu_instancing.
 //! - Images: KHR_texture_basisu, EXT_texture_webp (each before the texture's own source, which takes over where the
 //!   extension's image cannot be read), KHR_texture_transform.
+//! - Nodes: KHR_node_visibility; what is hidden neither is drawn nor casts, and hidden lights do not shine.
 //! - Lights and materials: KHR_lights_punctual and what [`extension_treatment`] tells.
 //!
 //! # Other formats
@@ -55,7 +71,7 @@
 //!
 //! A value of the last three that does not fit is left out, with a notice: it may mean something else to its author.
 //!
-//! Everything else that breaks the specification and bears on the scene is an error.
+//! Everything else that breaks the specification and bears on where the scene's surfaces are is an error.
 
 #[cfg(not(feature = "codecs"))]
 mod absent;
@@ -73,6 +89,7 @@ mod graph;
 mod images;
 mod info;
 mod instances;
+mod json;
 #[cfg(feature = "codecs")]
 mod ktx;
 mod lights;
@@ -87,9 +104,11 @@ mod ply;
 mod polygon;
 mod pose;
 mod raster;
+mod roots;
 #[cfg_attr(not(feature = "codecs"), expect(dead_code))]
 mod schema;
 mod shading;
+mod skins;
 mod stl;
 mod surface;
 mod uri;
@@ -106,7 +125,7 @@ use absent::{draco, ktx, meshopt};
 
 use crate::animate::Animated;
 use document::Document;
-use error::{Result, invalid, one_line};
+use error::{Result, one_line};
 use graph::Graph;
 use limits::Budget;
 use schema::Root;
@@ -164,13 +183,13 @@ fn read(path: &Path, limits: &Limits, variant: Option<&str>) -> Result<(Animated
 
     let mut notices = Vec::new();
     let Opened { mut root, bin, info } = open(&bytes, path, folder, &name, &budget, &mut notices)?;
-    validate::check(&root)?;
     variants::choose(&mut root, variant, &mut notices)?;
-    let document = Document::open(root, bin, folder, budget)?;
+    let graph = Graph::new(&root, &budget, &mut notices)?;
+    validate::check(&mut root, &graph, &mut notices)?;
+    let document = Document::open(root, bin, folder, budget, &mut notices)?;
 
     let mut scene = Scene { name, notices, ..Scene::default() };
     let textures = read_materials(&document, folder, &mut scene)?;
-    let graph = Graph::new(&document.root, &mut scene.notices)?;
     let mut motion = animations::read(&document, &graph, &mut scene.notices)?;
     let held = instances::read(&document, &graph, &mut motion, &mut scene)?;
     lights::read_lights(&document.root, &graph, &held, &textures, &document.budget, &mut motion, &mut scene)?;
@@ -206,8 +225,8 @@ fn open<'a>(
         Some("ply") => ply::read(bytes, folder, budget)?,
         _ => {
             let container = container::open(bytes, notices)?;
-            charge_json(container.json, budget)?;
-            let root = parse(container.json)?;
+            let root = json::parse(container.json, budget, notices)?;
+            validate::check_version(&root, notices)?;
             extensions::check(&root, notices);
             let info = FileInfo::of(&root);
             return Ok(Opened { root, bin: container.bin.map(Cow::Borrowed), info });
@@ -220,24 +239,6 @@ fn open<'a>(
     Ok(Opened { root, bin: Some(Cow::Owned(bin)), info })
 }
 
-/// Parsed JSON is larger than its text: `{}` may become a material. Commas bound the other values.
-fn charge_json(json: &[u8], budget: &Budget) -> Result<()> {
-    let count = |byte: u8| json.iter().filter(|b| **b == byte).count() as u64;
-    budget.charge(count(b'{'), 1024, || "the JSON".into())?;
-    budget.charge(count(b','), size_of::<serde_json::Value>() as u64, || "the JSON".into())
-}
-
-fn parse(json: &[u8]) -> Result<Root> {
-    let mut deserializer = serde_json::Deserializer::from_slice(json);
-    let root = serde_path_to_error::deserialize(&mut deserializer).map_err(|e| {
-        let path = e.path().to_string();
-        let element = if path == "." { "the JSON".into() } else { path };
-        invalid(element, e.into_inner().to_string())
-    })?;
-    deserializer.end().map_err(|e| invalid("the JSON", e.to_string()))?;
-    Ok(root)
-}
-
 /// Returns the scene's textures by the document's index.
 fn read_materials(document: &Document<'_>, folder: &Path, scene: &mut Scene) -> Result<Vec<Option<usize>>> {
     let mut index = Vec::new();
@@ -247,7 +248,7 @@ fn read_materials(document: &Document<'_>, folder: &Path, scene: &mut Scene) -> 
             scene.images.len() - 1
         }));
     }
-    let (textures, index) = materials::textures(&document.root, &index, &mut scene.notices);
+    let (textures, index) = materials::textures(&document.root, &index);
     scene.textures = textures;
     scene.materials = materials::materials(&document.root, &index, scene);
     Ok(index)

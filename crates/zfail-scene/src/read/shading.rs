@@ -20,6 +20,21 @@ pub(super) fn flat_normals(surface: &Surface) -> Vec<DVec3> {
     normals
 }
 
+/// Whether `normals`, as the file gives them, point elsewhere than the triangles do: the mean cosine over all corners of
+/// triangles with an area is under a half.
+pub(super) fn contradicts(surface: &Surface, normals: &[DVec3]) -> bool {
+    const LEAST_COSINE: f64 = 0.5;
+    let (mut sum, mut count) = (0.0, 0_usize);
+    for &triangle in &surface.triangles {
+        let Some(face) = area_vector(surface, triangle).try_normalize() else { continue };
+        for normal in triangle.iter().filter_map(|&v| normals[v as usize].try_normalize()) {
+            sum += face.dot(normal);
+            count += 1;
+        }
+    }
+    sum < LEAST_COSINE * count as f64
+}
+
 /// Makes every normal a unit vector; those without a direction get the mean of their triangles' normals, weighted by
 /// area. Returns how many there were.
 pub(super) fn mend_normals(surface: &Surface, normals: &mut [DVec3]) -> usize {
@@ -105,6 +120,17 @@ mod tests {
         let normals = flat_normals(&surface);
         assert_eq!(normals[..3], [DVec3::Z; 3]);
         assert_eq!(normals[3..], [DVec3::NEG_Z; 3]);
+    }
+
+    #[test]
+    fn contradicting_normals_are_found() {
+        let contradicts = |normals: [DVec3; 4]| contradicts(&quad(), &normals);
+        assert!(!contradicts([DVec3::Z; 4]) && !contradicts([DVec3::new(0.5, 0.5, 1.0); 4]));
+        assert!(contradicts([DVec3::NEG_Z; 4]) && contradicts([DVec3::X; 4]));
+        assert!(!contradicts([DVec3::ZERO; 4]), "none at all");
+        // The first and the third corner belong to both triangles.
+        assert!(!contradicts([DVec3::Z, DVec3::NEG_Z, DVec3::Z, DVec3::Z]));
+        assert!(contradicts([DVec3::NEG_Z, DVec3::Z, DVec3::Z, DVec3::Z]));
     }
 
     #[test]

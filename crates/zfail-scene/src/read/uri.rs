@@ -7,6 +7,7 @@ use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use percent_encoding::percent_decode_str;
 use std::fs;
+use std::io;
 use std::path::{Component, Path, PathBuf};
 
 /// Exporters often leave the padding out.
@@ -17,19 +18,22 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
 
 /// Reads what `uri`, found at JSON path `element`, refers to.
 pub(super) fn read(uri: &str, folder: &Path, budget: &Budget, element: &str) -> Result<Vec<u8>> {
-    let fault = |problem: String| Fault::Resource {
-        element: element.into(),
-        uri: one_line(&uri.chars().take(60).collect::<String>()),
-        problem,
-    };
+    let fault = |problem: String, remedy| Fault::Resource { element: element.into(), uri: shown(uri), problem, remedy };
     if let Some(data) = strip_scheme(uri, "data:") {
-        budget.charge(data.len() as u64, 1, || element.into())?;
-        return decode_data(data).map_err(fault);
+        budget.charge(data.len() as u64, 2, || element.into())?;
+        return decode_data(data).map_err(|problem| fault(problem, "export the file again"));
     }
-    let path = resolve(uri, folder).map_err(fault)?;
-    let length = regular_file_length(&path).map_err(fault)?;
+    let absent = |problem| fault(problem, "put the file there, or export as one .glb");
+    let path = resolve(uri, folder).map_err(absent)?;
+    let length = regular_file_length(&path).map_err(absent)?;
     budget.charge(length, 1, || element.into())?;
-    fs::read(&path).map_err(|e| fault(e.to_string()))
+    fs::read(&path).map_err(|e| absent(e.to_string()))
+}
+
+/// `uri` for a message: the plain name of a file, or the begin of what is longer.
+pub(super) fn shown(uri: &str) -> String {
+    let name = percent_decode_str(uri).decode_utf8().unwrap_or(uri.into());
+    one_line(&name.chars().take(60).collect::<String>())
 }
 
 /// Length of the file at `path`; an error for folders, pipes and devices, which have no definite one.
@@ -38,7 +42,14 @@ pub(super) fn regular_file_length(path: &Path) -> std::result::Result<u64, Strin
         Ok(data) if data.is_file() => Ok(data.len()),
         Ok(data) if data.is_dir() => Err("it is a folder".into()),
         Ok(_) => Err("it is not a regular file".into()),
-        Err(e) => Err(e.to_string()),
+        Err(e) => Err(absence(&e)),
+    }
+}
+
+fn absence(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::NotFound => "there is no such file".into(),
+        _ => error.to_string(),
     }
 }
 
@@ -53,6 +64,7 @@ fn decode_data(data: &str) -> std::result::Result<Vec<u8>, String> {
     if parameters.split(';').skip(1).any(str::is_empty) {
         return Err("the data URI has an empty parameter".into());
     }
+    let payload: String = payload.split_ascii_whitespace().collect();
     BASE64.decode(payload).map_err(|e| format!("its base64 is damaged: {e}"))
 }
 
@@ -74,8 +86,8 @@ pub(super) fn below(relative: &Path, folder: &Path) -> std::result::Result<PathB
         return Err("a file may refer only to files at or below its own folder".into());
     }
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let real_folder = folder.canonicalize().map_err(|e| e.to_string())?;
-    let path = folder.join(relative).canonicalize().map_err(|e| e.to_string())?;
+    let real_folder = folder.canonicalize().map_err(|e| absence(&e))?;
+    let path = folder.join(relative).canonicalize().map_err(|e| absence(&e))?;
     if !path.starts_with(&real_folder) {
         return Err("it leads out of the file's own folder through a symbolic link".into());
     }

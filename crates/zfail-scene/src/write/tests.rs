@@ -146,6 +146,7 @@ fn sampler() -> Scene {
         ground: None,
         exposure: None,
         notices: vec![],
+        ..Scene::default()
     }
 }
 

@@ -91,8 +91,6 @@ fn rotations_from_floats_and_normalised_integers() {
     for (gltf, z) in [(bytes, -1.0), (shorts, -1.0), (signed, 1.0)] {
         assert_near(quarter_turned(&gltf.animated()), [0.0, 0.0, z]);
     }
-    let plain = moving("rotation", "LINEAR", |g| g.bytes(&[[0, 0, 0, 255], [0, 255, 0, 0]]));
-    plain.fails_with("animations[0].samplers[0].output: accessors[2] must hold floats or normalized integers");
 }
 
 #[test]
@@ -276,43 +274,117 @@ fn rotations_without_length_are_replaced() {
     assert_eq!(instance(&animated, 0.0), DAffine3::IDENTITY, "before it, the node's own");
 }
 
+/// Asserts that the animation of `gltf` moves nothing, and that the notice about it ends so.
+#[track_caller]
+fn assert_still(gltf: &Gltf, expected: &str) {
+    let animated = gltf.animated();
+    assert_sound(&animated.scene);
+    assert!(animated.animations.iter().all(|animation| !animation.moves_anything()), "{expected}");
+    assert_eq!(animated.scene.instances.len(), 1);
+    let notices = &animated.scene.notices;
+    assert!(notices.iter().any(|notice| notice.contains(expected)), "{notices:?} lack {expected:?}");
+}
+
 #[test]
-fn faults_are_named() {
-    assert!(sliding().load().is_ok(), "without a fault it loads");
-    let fails = |pointer: &str, value: Value, expected: &str| {
+fn broken_channels_are_left_out() {
+    assert!(sliding().animated().animations[0].moves_anything(), "without a fault it moves");
+    let still = |pointer: &str, value: Value, expected: &str| {
         let mut gltf = sliding();
         *gltf.json.pointer_mut(&format!("/animations/0/{pointer}")).unwrap() = value;
-        gltf.fails_with(expected);
+        assert_still(&gltf, expected);
     };
-    fails("samplers/0/input", json!(9), "animations[0].samplers[0].input: refers to accessors[9]");
-    fails("samplers/0/output", json!(9), "animations[0].samplers[0].output: refers to accessors[9]");
-    fails("channels/0/sampler", json!(1), "animations[0].channels[0].sampler: refers to samplers[1]");
-    fails("channels/0/target/node", json!(1), "animations[0].channels[0].target.node: refers to nodes[1]");
-    fails("channels/0/target", json!({}), "missing field `path`");
-    fails("samplers/0/interpolation", json!("BEZIER"), "animations[0].samplers[0].interpolation");
-    fails("samplers/0/interpolation", json!("CUBICSPLINE"), "has 2 elements, but 2 keys need 6");
-    fails("channels/0/target/path", json!("rotation"), "accessors[2].type: is Vec3, but 4 components are needed");
-    fails("samplers/0/input", json!(0), "accessors[0].type: is Vec3, but 1 components are needed");
+    still("samplers/0/input", json!(9), "animations[0].samplers[0].input refers to accessors[9]");
+    still("samplers/0/output", json!(9), "animations[0].samplers[0].output refers to accessors[9]");
+    still("channels/0/sampler", json!(1), "animations[0].channels[0].sampler refers to samplers[1]");
+    still("channels/0/target/node", json!(1), "animations[0].channels[0].target.node refers to nodes[1]");
+    still("channels/0/target", json!({}), "animations[0].channels[0].target.path is \"\": left out");
+    still("samplers/0/interpolation", json!("BEZIER"), "animations[0].samplers[0].interpolation is left out: unknown");
+    still("samplers/0/interpolation", json!("CUBICSPLINE"), "has 2 elements, but 2 keys need 6");
+    still("channels/0/target/path", json!("rotation"), "accessors[2].type: is Vec3, but 4 components are needed");
+    still("samplers/0/input", json!(0), "accessors[0].type: is Vec3, but 1 components are needed");
 
     let with_times = |times: &[[f32; 1]], expected: &str| {
         let mut gltf = sliding();
         gltf.json["animations"][0]["samplers"][0]["input"] = json!(gltf.floats(times));
-        gltf.fails_with(expected);
+        assert_still(&gltf, expected);
     };
     with_times(&[[0.0], [1.0], [2.0]], "accessors[2] has 2 elements, but 3 keys need 3");
     with_times(&[], "animations[0].samplers[0].input: accessors[3] has no keys");
     with_times(&[[0.0], [f32::NAN]], "the time of key 1 (accessors[3]) is not finite");
-    with_times(&[[1.0], [0.5]], "the time of key 1 (accessors[3]) is before that of key 0");
     let mut gltf = sliding();
     gltf.json["animations"][0]["samplers"][0]["input"] = json!(gltf.shorts(&[[0], [1]]));
-    gltf.fails_with("animations[0].samplers[0].input: accessors[3] must hold single-precision floats");
+    assert_still(&gltf, "animations[0].samplers[0].input: accessors[3] must hold single-precision floats");
 
-    moving("scale", "LINEAR", |g| g.floats(&[[1.0; 3], [1.0, f32::INFINITY, 1.0]]))
-        .fails_with("animations[0].samplers[0].output: element 1 (accessors[2]) is not finite");
+    let infinite = moving("scale", "LINEAR", |g| g.floats(&[[1.0; 3], [1.0, f32::INFINITY, 1.0]]));
+    assert_still(&infinite, "animations[0].samplers[0].output: element 1 (accessors[2]) is not finite");
+    let plain = moving("rotation", "LINEAR", |g| g.bytes(&[[0, 0, 0, 255], [0, 255, 0, 0]]));
+    assert_still(&plain, "animations[0].samplers[0].output: accessors[2] must hold floats or normalized integers");
+}
+
+#[test]
+fn a_second_channel_of_the_same_property_is_left_out() {
     let mut gltf = sliding();
-    let again = gltf.json["animations"][0]["channels"][0].clone();
-    gltf.json["animations"][0]["channels"].as_array_mut().unwrap().push(again);
-    gltf.fails_with("animations[0].channels[1].target: moves the translation of nodes[0] a second time");
+    let other = gltf.floats(&[[0.0; 3], [0.0; 3]]);
+    let animation = &mut gltf.json["animations"][0];
+    let input = animation["samplers"][0]["input"].clone();
+    animation["samplers"].as_array_mut().unwrap().push(json!({"input": input, "output": other}));
+    let mut again = animation["channels"][0].clone();
+    again["sampler"] = json!(1);
+    animation["channels"].as_array_mut().unwrap().push(again);
+    let animated = gltf.animated();
+    assert_eq!(instance(&animated, 2.0).translation.x, 15.0);
+    let expected = "animations[0].channels[1] is left out: it moves the translation of nodes[0] a second time";
+    assert_eq!(animated.scene.notices, [expected]);
+}
+
+#[test]
+fn keys_out_of_order_are_sorted() {
+    let sorted = |interpolation: &str, times: &[[f32; 1]], values: &[[f32; 3]]| {
+        let mut gltf = moving("translation", interpolation, |g| g.floats(values));
+        gltf.json["animations"][0]["samplers"][0]["input"] = json!(gltf.floats(times));
+        let animated = gltf.animated();
+        assert_eq!(animated.scene.notices.len(), usize::from(!times.is_sorted()), "{:?}", animated.scene.notices);
+        animated
+    };
+    let x = |x: f32| [x, 0.0, 0.0];
+    let linear = sorted("LINEAR", &[[3.0], [1.0], [2.0]], &[x(30.0), x(10.0), x(0.0)]);
+    assert_eq!(linear.animations[0].duration, 3.0);
+    for (seconds, expected) in [(0.0, 10.0), (1.5, 5.0), (2.0, 0.0), (2.5, 15.0), (9.0, 30.0)] {
+        assert_eq!(instance(&linear, seconds).translation.x, expected, "{seconds}");
+    }
+    // Tangents go with their key.
+    let key = |t: f32| [x(2.0 * t), x(t * t), x(2.0 * t)];
+    let spline = sorted("CUBICSPLINE", &[[3.0], [1.0]], [key(3.0), key(1.0)].as_flattened());
+    let same = sorted("CUBICSPLINE", &[[1.0], [3.0]], [key(1.0), key(3.0)].as_flattened());
+    for seconds in [1.0, 1.5, 2.5] {
+        assert_eq!(instance(&spline, seconds).translation.x, seconds * seconds);
+        assert_eq!(instance(&spline, seconds), instance(&same, seconds));
+    }
+}
+
+#[test]
+fn what_pointers_would_change_is_named() {
+    let mut gltf = sliding();
+    let pointer =
+        |pointer: &str| json!({"path": "pointer", "extensions": {"KHR_animation_pointer": {"pointer": pointer}}});
+    let channel = &mut gltf.json["animations"][0]["channels"][0]["target"];
+    *channel = pointer("/nodes/0/extensions/KHR_node_visibility/visible");
+    assert_still(&gltf, "show and hide by \"/nodes/0/extensions/KHR_node_visibility/visible\": left out");
+    gltf.json["animations"][0]["channels"][0]["target"] = pointer("/materials/0/alphaCutoff");
+    assert_still(&gltf, "animations[0].channels[0] would change \"/materials/0/alphaCutoff\": left out");
+}
+
+#[test]
+fn a_node_below_two_others_moves_below_both() {
+    let mut gltf = sliding();
+    gltf.json["nodes"] =
+        json!([{"children": [3]}, {"children": [2]}, {"children": [3], "translation": [0, 7, 0]}, {"mesh": 0}]);
+    let animated = gltf.animated();
+    let places = |pose: &Pose| pose.instances.iter().map(|i| i.translation.to_array()).collect::<Vec<_>>();
+    assert_eq!(places(&Pose::of(&animated.scene)), [[0.0; 3], [0.0, 7.0, 0.0]]);
+    assert_eq!(places(&animated.pose(0, 2.0)), [[15.0, 0.0, 0.0], [0.0, 7.0, 0.0]]);
+    gltf.json["animations"][0]["channels"][0]["target"]["node"] = json!(3);
+    assert_eq!(places(&gltf.animated().pose(0, 2.0)), [[15.0, 0.0, 0.0], [15.0, 7.0, 0.0]], "itself, in both places");
 }
 
 #[test]

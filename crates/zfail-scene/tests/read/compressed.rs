@@ -178,7 +178,7 @@ fn meshopt_that_contradicts_its_view() {
     change(1, "byteStride", json!(3), ".byteStride: must be 2 or 4");
     change(1, "filter", json!("OCTAHEDRAL"), ".filter: must be NONE");
     change(1, "count", json!(112), ".count: must be a multiple of 3");
-    change(1, "buffer", json!(7), ".buffer: refers to buffers[7]");
+    change(1, "buffer", json!(7), ": refers to buffers[7]");
     change(1, "mode", json!("MAGIC"), ".mode: unknown variant");
     let mut gltf = original.clone();
     gltf.json["bufferViews"][0]["byteStride"] = json!(16);
@@ -261,8 +261,13 @@ fn draco_that_contradicts_its_accessors() {
         gltf.json["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"][property] = value;
     };
     with(&|g| extension(g, "bufferView", json!(9))).fails_with(&format!("{path}.bufferView: refers to bufferViews[9]"));
-    with(&|g| extension(g, "attributes", json!({"POSITION": 0, "TEXCOORD_0": 77})))
-        .fails_with(&format!("{path}.attributes.TEXCOORD_0: the stream has no attribute with the id 77"));
+    with(&|g| extension(g, "attributes", json!({"POSITION": 77})))
+        .fails_with(&format!("{path}.attributes.POSITION: the stream has no attribute with the id 77"));
+    let plain = with(&|g| extension(g, "attributes", json!({"POSITION": 0, "TEXCOORD_0": 77}))).scene();
+    assert_eq!((corners(&plain), plain.meshes[0].uv0[7]), (expected_corners(), [0.0; 2]));
+    let spared =
+        "meshes[0].primitives[0].attributes.TEXCOORD_0 is left out: the stream has no attribute with the id 77";
+    assert_eq!(plain.notices, [spared]);
     with(&|g| extension(g, "attributes", json!({"NORMAL": 0})))
         .fails_with(&format!("{path}.attributes.NORMAL: is not among the attributes"));
     let fewer = with(&|g| (0..2).for_each(|a| g.json["accessors"][a]["count"] = json!(39)));
@@ -277,7 +282,8 @@ fn draco_that_contradicts_its_accessors() {
         (0..2).for_each(|a| g.json["accessors"][a]["count"] = count.clone());
         g.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(colors);
     });
-    beside.fails_with("holds 40 vertices, but COLOR_0 (accessors[3]) has 41");
+    let spared = "mesh \"mesh 0\": COLOR_0 is left out: has 41 elements, but POSITION has 40";
+    assert_eq!(beside.scene().notices, [spared]);
     let points = with(&|g| g.json["meshes"][0]["primitives"][0]["mode"] = json!(0));
     assert_eq!(points.scene().notices[0], "mesh \"mesh 0\": 1 primitive of points or lines: not drawn");
 }

@@ -44,7 +44,8 @@ fn primitives_are_concatenated_with_their_materials() {
     let mesh = &scene.meshes[0];
     assert_eq!(mesh.triangles, [[0, 1, 2], [3, 5, 4]]);
     assert_eq!([mesh.material_of(0), mesh.material_of(1)], [None, Some(0)]);
-    assert_eq!(scene.notices, ["mesh \"mesh 0\": 1 primitive without POSITION: not drawn"]);
+    let told = "mesh \"mesh 0\": 1 primitive whose normals disagree with its triangles: it may be shaded wrong";
+    assert_eq!(scene.notices, ["mesh \"mesh 0\": 1 primitive without POSITION: not drawn", told]);
 }
 
 #[test]
@@ -71,7 +72,8 @@ fn bad_normals_are_replaced_with_a_notice() {
     let scene = gltf.scene();
     assert_sound(&scene);
     assert_eq!(scene.meshes[0].normals, [[0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]]);
-    assert_eq!(scene.notices, ["mesh \"mesh 0\": 2 vertex normals without a direction: replaced"]);
+    let told = "mesh \"mesh 0\": 1 primitive whose normals disagree with its triangles: it may be shaded wrong";
+    assert_eq!(scene.notices, ["mesh \"mesh 0\": 2 vertex normals without a direction: replaced", told]);
 }
 
 #[test]
@@ -162,7 +164,8 @@ fn sparse_accessors() {
     sparse(&gltf, "count", json!(4)).fails_with("accessors[0].sparse.count: is 4");
     sparse(&gltf, "count", json!(2)).fails_with("accessors[0].sparse.indices: 2 elements");
     sparse(&gltf, "indices/componentType", json!(5126)).fails_with("accessors[0].sparse.indices.componentType");
-    sparse(&gltf, "indices/bufferView", json!(9)).fails_with("accessors[0].sparse.indices.bufferView: refers to");
+    sparse(&gltf, "indices/bufferView", json!(9))
+        .fails_with("accessors[0].sparse.indices: needs bufferViews[9]: is not there");
     let out = gltf.json["bufferViews"][indices]["byteOffset"].as_u64().unwrap() as usize;
     gltf.bin[out] = 3;
     gltf.fails_with("accessors[0].sparse.indices: element 0 is 3, but the accessor has 3 elements");
@@ -170,27 +173,6 @@ fn sparse_accessors() {
 
 #[test]
 fn faulty_geometry_is_named() {
-    let with_indices = |indices: &[u16]| {
-        Gltf::with_primitive(
-            |g| json!({"attributes": {"POSITION": g.floats(&TRIANGLE)}, "indices": g.indices(indices)}),
-        )
-    };
-    with_indices(&[0, 1, 3]).fails_with("meshes[0].primitives[0].indices: element 2 of accessors[1] is 3");
-    with_indices(&[0, 1, 65535]).fails_with("is 65535, but there are 3 vertices");
-
-    let restart = Gltf::with_primitive(|g| {
-        let positions = g.floats(&[[0.0; 3]; 256]);
-        json!({"attributes": {"POSITION": positions}, "indices": g.bytes(&[[0], [1], [255]])})
-    });
-    restart.fails_with("the forbidden restart value");
-
-    for bad in [f32::NAN, f32::INFINITY] {
-        let mut positions = TRIANGLE;
-        positions[1][2] = bad;
-        let gltf = Gltf::with_primitive(|g| json!({"attributes": {"POSITION": g.floats(&positions)}}));
-        gltf.fails_with("meshes[0].primitives[0].attributes.POSITION: vertex 1 (accessors[0]) is not finite");
-    }
-
     let mut far = TRIANGLE;
     far[0][0] = 1e20;
     let gltf = Gltf::with_primitive(|g| json!({"attributes": {"POSITION": g.floats(&far)}}));
@@ -206,16 +188,6 @@ fn faulty_geometry_is_named() {
     gltf.fails_with("accessors[0]: 3 elements");
     gltf.json["accessors"][0]["byteOffset"] = json!(-4);
     gltf.fails_with("accessors[0].byteOffset: invalid value");
-}
-
-#[test]
-fn unused_meshes_are_left_out_but_checked() {
-    let mut gltf = Gltf::triangle();
-    let indices = gltf.indices(&[0, 1, 2]);
-    gltf.push("meshes", json!({"primitives": [{"attributes": {"POSITION": 0}, "indices": indices}]}));
-    assert_eq!(gltf.scene().meshes.len(), 1);
-    *gltf.bin.last_mut().unwrap() = 9;
-    gltf.fails_with("meshes[1].primitives[0].indices");
 }
 
 #[test]

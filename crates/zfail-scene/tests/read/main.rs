@@ -5,6 +5,7 @@ mod bending;
 mod build;
 mod compressed;
 mod files;
+mod forgiving;
 mod geometry;
 mod hostile;
 mod images;

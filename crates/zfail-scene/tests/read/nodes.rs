@@ -44,16 +44,107 @@ fn nodes_are_visited_depth_first() {
 fn broken_hierarchies_are_refused() {
     with_nodes(json!([{"children": [1]}, {"children": [0]}])).fails_with("nodes[0]: is or hangs below");
     with_nodes(json!([{"children": [0]}])).fails_with("nodes[0]");
-    with_nodes(json!([{"children": [1, 1]}, {}])).fails_with("nodes[0].children[1]");
+    with_nodes(json!([{"children": [1]}, {"children": [2]}, {"children": [1]}])).fails_with("nodes[1]: is or hangs");
     with_nodes(json!([{"children": [2]}])).fails_with("nodes[0].children[0]: refers to nodes[2], but the file has 1");
     with_nodes(json!([{"mesh": 1}])).fails_with("nodes[0].mesh: refers to meshes[1]");
-    let mut gltf = with_nodes(json!([{"children": [1]}, {}]));
-    gltf.json["scenes"] = json!([{"nodes": [1]}]);
-    gltf.fails_with("scenes[0].nodes[0]: nodes[1] is no root");
-    gltf.json["scenes"] = json!([{"nodes": [0, 0]}]);
-    gltf.fails_with("scenes[0].nodes[1]: names nodes[0] twice");
+    let mut gltf = with_nodes(json!([{"mesh": 0}]));
+    gltf.json["scenes"] = json!([{"nodes": [0, 4]}]);
+    gltf.fails_with("scenes[0].nodes[1]: refers to nodes[4], but the file has 1");
+}
+
+#[test]
+fn all_nodes_are_drawn_where_no_scene_says_which() {
+    let mut gltf = with_nodes(json!([{"name": "a", "mesh": 0}, {"children": [2]}, {"name": "b", "mesh": 0}]));
+    assert_eq!((names(&gltf.scene()), gltf.scene().notices.len()), (vec!["a", "b"], 0));
+    gltf.json["scenes"] = json!([]);
+    assert_eq!((names(&gltf.scene()), gltf.scene().notices.len()), (vec!["a", "b"], 0));
+    gltf.json["scenes"] = json!([{"nodes": [0]}]);
     gltf.json["scene"] = json!(3);
-    gltf.fails_with("scene: refers to scenes[3]");
+    assert_eq!(names(&gltf.scene()), ["a", "b"]);
+    assert_eq!(gltf.scene().notices, ["scene is 3, but the file has 1 scenes: all its nodes are drawn"]);
+    gltf.json["scene"] = json!(-1);
+    assert_eq!(names(&gltf.scene()), ["a"], "the first scene");
+    gltf.json["scenes"] = json!([{}]);
+    gltf.json["scene"] = json!(0);
+    assert_eq!(names(&gltf.scene()), ["a", "b"]);
+    assert_eq!(gltf.scene().notices, ["scenes[0] names no nodes: all nodes of the file are drawn"]);
+}
+
+#[test]
+fn what_the_scene_lists_twice_is_drawn_once() {
+    let mut gltf = with_nodes(json!([
+        {"name": "child", "mesh": 0, "translation": [1, 0, 0]}, {"translation": [10, 0, 0], "children": [0]}
+    ]));
+    let x = |gltf: &Gltf| gltf.scene().instances.iter().map(|i| i.world_from_object.translation.x).collect::<Vec<_>>();
+    for (nodes, places, count) in [
+        (json!([1]), vec![11.0], 0),
+        (json!([0, 1]), vec![11.0], 1),
+        (json!([1, 0]), vec![11.0], 1),
+        (json!([1, 1]), vec![11.0], 1),
+        // Without its parent, it is where the scene has it.
+        (json!([0]), vec![1.0], 0),
+    ] {
+        gltf.json["scenes"] = json!([{"nodes": nodes}]);
+        assert_eq!((x(&gltf), gltf.scene().notices.len()), (places, count), "{nodes}: {:?}", gltf.scene().notices);
+    }
+    gltf.json["nodes"][1]["children"] = json!([0, 0]);
+    gltf.json["scenes"] = json!([{"nodes": [1]}]);
+    assert_eq!(x(&gltf), [11.0]);
+    assert_eq!(gltf.scene().notices, ["nodes[1].children[1] names nodes[0] twice: drawn once"]);
+}
+
+#[test]
+fn a_node_with_two_parents_is_drawn_below_both() {
+    let gltf = with_lights(json!([
+        {"translation": [1, 0, 0], "children": [2]}, {"translation": [0, 5, 0], "children": [2], "name": "second"},
+        {"translation": [0, 0, 1], "children": [3], "mesh": 0}, {"mesh": 0, "name": "leaf", "extensions": light(0)},
+        {"extensions": light(0), "extras": {"shadowExclude": ["second"]}}
+    ]));
+    let scene = gltf.scene();
+    let places: Vec<_> = scene.instances.iter().map(|i| i.world_from_object.translation.to_array()).collect();
+    assert_eq!(places, [[1.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 5.0, 1.0], [0.0, 5.0, 1.0]]);
+    assert_eq!((scene.meshes.len(), scene.lights.len()), (1, 3));
+    assert_eq!(scene.lights[2].excluded, [2, 3], "below one of the parents");
+    assert_eq!(scene.notices, ["2 nodes are drawn again below a second parent"]);
+}
+
+#[test]
+fn more_ways_to_a_node_than_memory_are_refused() {
+    // Two ways on each of 40 levels.
+    let mut nodes: Vec<Value> = (0..40)
+        .flat_map(|i| {
+            let next = json!({"children": [2 * i + 2, 2 * i + 3]});
+            [next.clone(), next]
+        })
+        .collect();
+    nodes.extend([json!({"mesh": 0}), json!({"mesh": 0})]);
+    let start = std::time::Instant::now();
+    with_nodes(json!(nodes)).fails_with("reached by many ways: needs more than the limit of 8192 MiB");
+    assert!(start.elapsed() < std::time::Duration::from_secs(10), "{:?}", start.elapsed());
+    let few = with_nodes(json!([{"children": [1, 2]}, {"children": [3]}, {"children": [3]}, {"mesh": 0}]));
+    assert_eq!(few.scene().instances.len(), 2);
+}
+
+#[test]
+fn hidden_nodes_are_not_drawn() {
+    let hidden = json!({"KHR_node_visibility": {"visible": false}});
+    let shown = json!({"KHR_node_visibility": {"visible": true}});
+    let mut gltf = with_lights(json!([
+        {"name": "a", "mesh": 0, "extensions": shown}, {"name": "b", "mesh": 0, "extensions": hidden, "children": [2, 3, 4]},
+        {"name": "c", "mesh": 0, "extensions": shown}, {"extensions": light(0)}, {"camera": 0},
+        {"name": "d", "mesh": 0, "extensions": {"KHR_node_visibility": {}}}, {"extensions": light(2)}
+    ]));
+    gltf.json["cameras"] = json!([{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.5}}]);
+    gltf.json["extensionsUsed"] = json!(["KHR_node_visibility", "KHR_lights_punctual"]);
+    let scene = gltf.scene();
+    assert_eq!((names(&scene), scene.lights.len(), scene.cameras.len()), (vec!["a", "d"], 1, 1));
+    let notice = "1 node is hidden (KHR_node_visibility): neither drawn nor casting, with all that hangs below";
+    assert_eq!(scene.notices, [notice]);
+    // What is hidden may be broken.
+    gltf.json["nodes"][2]["mesh"] = json!(7);
+    assert_eq!(names(&gltf.scene()), ["a", "d"]);
+    gltf.json["nodes"][1]["extensions"] = json!({});
+    gltf.fails_with("nodes[2].mesh: refers to meshes[7]");
 }
 
 #[test]
@@ -157,8 +248,13 @@ fn lights() {
     assert_eq!((range, inner, outer), (7.0, 0.1, 0.5), "a node's scale does not change a light");
     let LightKind::Directional { direction } = scene.lights[2].kind else { panic!() };
     assert!(direction.distance(DVec3::NEG_Y) < 1e-12);
-    with_lights(json!([{"extensions": light(3)}]))
-        .fails_with("nodes[0].extensions.KHR_lights_punctual.light: refers to");
+    let dangling = with_lights(json!([{"extensions": light(3)}, {"extensions": light(0)}])).scene();
+    assert!(dangling.notices[0].starts_with("nodes[0].extensions.KHR_lights_punctual.light refers to"));
+    let mut unknown = with_lights(json!([{"extensions": light(0)}, {"extensions": light(1)}]));
+    unknown.json["extensions"]["KHR_lights_punctual"]["lights"][0]["type"] = json!("area");
+    let unknown = unknown.scene();
+    assert_eq!((dangling.lights.len(), unknown.lights.len()), (1, 1));
+    assert!(unknown.notices[1].ends_with("lights[0] is of no known type: left out"), "{:?}", unknown.notices);
 }
 
 #[test]
@@ -243,16 +339,21 @@ fn cameras() {
     assert_eq!(scene.cameras[1].name, "plan");
     assert_eq!(scene.cameras[1].projection, Projection::Orthographic { ymag: 2.0, near: 0.0, far: 10.0 });
     for (path, value, expected) in [
-        ("0/perspective/yfov", json!(4), "cameras[0].perspective.yfov"),
-        ("0/perspective/znear", json!(0), "cameras[0].perspective.znear"),
-        ("1/orthographic/ymag", json!(0), "cameras[1].orthographic.ymag"),
-        ("1/orthographic/zfar", json!(0), "cameras[1].orthographic.zfar"),
-        ("1/orthographic", Value::Null, "cameras[1].type"),
+        ("0/perspective/yfov", json!(4), "cameras[0] is left out: perspective.yfov must"),
+        ("0/perspective/znear", json!(0), "cameras[0] is left out: perspective.znear must"),
+        ("0/perspective/yfov", json!("wide"), "cameras[0].perspective.yfov is left out: invalid type"),
+        ("1/orthographic/ymag", json!(0), "cameras[1] is left out: orthographic.ymag must"),
+        ("1/orthographic/zfar", json!(0), "cameras[1] is left out: orthographic.zfar must"),
+        ("1/orthographic", Value::Null, "cameras[1] is left out: it needs exactly one of"),
     ] {
         let mut gltf = gltf.clone();
         *gltf.json.pointer_mut(&format!("/cameras/{path}")).unwrap() = value;
-        gltf.fails_with(expected);
+        let scene = gltf.scene();
+        assert!(scene.cameras.len() == 1 && scene.notices[0].starts_with(expected), "{:?}", scene.notices);
     }
+    gltf.json["nodes"][0]["camera"] = json!(9);
+    assert_eq!(gltf.scene().cameras.len(), 1);
+    assert!(gltf.scene().notices[0].starts_with("nodes[0].camera refers to cameras[9]"), "{:?}", gltf.scene().notices);
 }
 
 #[test]

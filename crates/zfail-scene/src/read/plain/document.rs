@@ -115,8 +115,16 @@ impl Writer {
         words.for_each(|word| self.bin.extend_from_slice(&word));
         let buffer_view = Some(self.view_from(start));
         let count = count as u64;
-        let accessor =
-            Accessor { buffer_view, byte_offset: 0, component_type, normalized: false, count, shape, sparse: None };
+        let accessor = Accessor {
+            buffer_view,
+            byte_offset: 0,
+            component_type,
+            normalized: false,
+            count,
+            shape,
+            sparse: None,
+            fault: None,
+        };
         self.accessors.push(accessor);
         self.accessors.len() - 1
     }
@@ -132,7 +140,7 @@ impl Writer {
     fn view_from(&mut self, start: usize) -> usize {
         let (byte_offset, byte_length) = (start as u64, (self.bin.len() - start) as u64);
         let extensions = BufferViewExtensions::default();
-        self.views.push(BufferView { buffer: 0, byte_offset, byte_length, byte_stride: None, extensions });
+        self.views.push(BufferView { buffer: 0, byte_offset, byte_length, byte_stride: None, extensions, fault: None });
         self.views.len() - 1
     }
 }
