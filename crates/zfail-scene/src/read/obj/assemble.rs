@@ -72,6 +72,7 @@ pub(super) fn assemble(
             polygon => triangulator.cut(polygon, |v| positions[v as usize], triangles),
         }
     }
+    notices.extend(triangulator.notice());
     Ok(Assembly { parts, origin, losses, notices })
 }
 

@@ -178,6 +178,7 @@ fn assemble(vertices: Vertices, faces: Faces, notices: &mut Vec<String>) -> Resu
             polygon => triangulator.cut(polygon, |v| positions[v as usize], &mut triangles),
         }
     }
+    notices.extend(triangulator.notice());
     let uv = uv.map(|uv| uv.into_iter().map(|[u, v]| [u, 1.0 - v]).collect());
     Ok((origin, Part { positions, normals, uv, colors, triangles, material: 0 }))
 }

@@ -80,6 +80,7 @@ fn assemble(facets: Facets, budget: &Budget) -> Result<Plain> {
             polygons += 1;
         }
     }
+    notices.extend(triangulator.notice());
     notices.extend(losses.notices());
     if polygons > 0 {
         notices.push(format!("{} of more than three corners: taken as polygons", counted(polygons, "facet")));
