@@ -67,14 +67,14 @@ pub fn complete(
     loading: &Loading,
     moment: Option<&Moment>,
     size: [u32; 2],
-    setting: Setting,
+    setting: &Setting,
 ) -> Result<Animated, Error> {
     let (mut animated, file) = read(scene, loading)?;
     // Built-in scenes are whole.
     if file.is_some() || setting.sun.is_some() || matches!(setting.ground, GroundChoice::Height(_)) {
         let animation = moment.map(|moment| animation(&animated, moment)).transpose()?;
         let aspect = f64::from(size[0]) / f64::from(size[1]);
-        Setting { aspect, animation, ..setting }.complete(&mut animated);
+        Setting { aspect, animation, ..setting.clone() }.complete(&mut animated);
     }
     Ok(animated)
 }
@@ -116,7 +116,7 @@ pub struct Shot {
 /// If the scene cannot be loaded, or has no such animation, camera or light.
 pub fn shot(subject: &Subject, quiet: bool) -> Result<Shot, Error> {
     let (source, size) = (&subject.scene, subject.size.0);
-    let animated = complete(&source.scene, &source.loading, subject.moment.shown(), size, subject.sunlight.bare())?;
+    let animated = complete(&source.scene, &source.loading, subject.moment.shown(), size, &subject.sunlight.bare())?;
     let scene = at_moment(animated, &subject.moment)?;
     console::notices(&scene.notices, quiet);
     let camera = camera(&scene, &subject.camera)?;

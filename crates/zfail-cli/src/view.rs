@@ -16,9 +16,7 @@ use zfail_view::{Host, Message, Options};
 pub fn run(args: &args::View) -> Result<(), Error> {
     let (loading, size, setting) = (args.loading.clone(), args.size.0, args.sunlight.with(&args.surroundings));
     let host = Host {
-        load: Arc::new(move |scene| {
-            input::complete(scene, &loading, None, size, setting.clone()).map_err(|e| e.to_string())
-        }),
+        load: Arc::new(move |scene| input::complete(scene, &loading, None, size, &setting).map_err(|e| e.to_string())),
         encode: |size, rgba| encode::png_picture(size, &encode::rgb8(rgba), None).map_err(|e| e.to_string()),
         explain: input::chain,
         say,

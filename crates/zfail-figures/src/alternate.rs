@@ -59,7 +59,7 @@ pub fn worth_seeing<'p>(model: &Model, paper: &Paper<'_>, scene: impl Iterator<I
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drawing::Vertex;
+    use crate::drawing::{Surfaces, Vertex, flat};
     use crate::test_scene::{paper, scene, view};
     use zfail_plan::glam::{DMat4, Vec4};
 

@@ -82,6 +82,8 @@ fn with_far_near_plane(model: &Model, view: &View) -> (View, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Overlay;
+    use crate::drawing::Surfaces;
     use crate::test_scene::{paper, scene, view};
     use crate::volumes::Part;
     use zfail_plan::glam::Vec4;

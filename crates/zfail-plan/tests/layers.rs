@@ -46,7 +46,7 @@ fn hedgehog(random: &mut Random, count: u32) -> Soup {
 fn fan(segments: u32, pleat: f64, turns: f64) -> Soup {
     let rim = |i: u32| {
         let (sin, cos) = (std::f64::consts::TAU * turns * f64::from(i) / f64::from(segments)).sin_cos();
-        f32s(DVec3::new(cos, if i % 2 == 0 { pleat } else { -pleat }, sin))
+        f32s(DVec3::new(cos, if i.is_multiple_of(2) { pleat } else { -pleat }, sin))
     };
     let positions = std::iter::once([0.0; 3]).chain((0..segments).map(rim)).collect();
     (positions, (0..segments).map(|i| [0, 1 + i, 1 + (i + 1) % segments]).collect())

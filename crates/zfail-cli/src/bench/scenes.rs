@@ -32,7 +32,7 @@ impl Course {
     /// If there is no such scene, or it cannot be used.
     pub fn new(name: &str, args: &args::Bench) -> Result<Self, Error> {
         let moment = Moment { time: None, animation: None };
-        let mut animated = input::complete(name, &args.loading, Some(&moment), args.size.0, args.sunlight.bare())?;
+        let mut animated = input::complete(name, &args.loading, Some(&moment), args.size.0, &args.sunlight.bare())?;
         if !animated.animations.first().is_some_and(|animation| animation.moves_anything()) {
             animated
                 .scene

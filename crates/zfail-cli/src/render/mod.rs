@@ -76,7 +76,7 @@ fn still(args: &args::Render) -> Result<(), Error> {
 /// The scene, completed for the pictures of `moment`, or at rest.
 fn load(args: &args::Render, moment: Option<&args::Moment>) -> Result<Animated, Error> {
     let setting = args.sunlight.with(&args.surroundings);
-    input::complete(&args.scene.scene, &args.scene.loading, moment, args.size.0, setting)
+    input::complete(&args.scene.scene, &args.scene.loading, moment, args.size.0, &setting)
 }
 
 fn settings(args: &args::Render, lights: &[usize]) -> Settings {

@@ -29,7 +29,7 @@ pub struct Framing(pub(super) Kind);
 #[derive(Clone, Debug)]
 pub(super) enum Kind {
     /// From outside.
-    Around { origin: DVec3, axes: DMat3, reach: Reach },
+    Around { origin: DVec3, axes: DMat3, reach: Box<Reach> },
     /// From a place within.
     Inside(Camera),
 }
@@ -116,7 +116,7 @@ impl Reach {
 impl Framing {
     /// Of what `reach` holds, relative to `origin` in the directions of `axes`.
     pub(super) fn around(origin: DVec3, axes: DMat3, reach: Reach) -> Self {
-        Self(Kind::Around { origin, axes, reach })
+        Self(Kind::Around { origin, axes, reach: Box::new(reach) })
     }
 
     /// From `eye` along `-back`, in a room of this size.

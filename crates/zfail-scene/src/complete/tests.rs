@@ -212,7 +212,7 @@ fn what_leaves_its_place_would_leave_a_picture_of_its_rest() {
     pose.instances[0] = DAffine3::from_translation(DVec3::new(7.0, -3.0, 0.0));
     let moved = || vertices(&scene).map(|p| p + DVec3::new(7.0, -3.0, 0.0));
     let outside = |camera: &Camera| reached(camera, 1.0, moved()).into_iter().any(|side| side > 1.0);
-    assert!(outside(&framed(&[rest.clone()]).0));
+    assert!(outside(&framed(std::slice::from_ref(&rest)).0));
     let (camera, bounds) = framed(&[rest, pose]);
     assert!(!outside(&camera));
     assert_eq!(bounds, Bounds { min: DVec3::new(0.0, -3.0, 0.0), max: DVec3::new(8.0, 1.0, 1.0) });

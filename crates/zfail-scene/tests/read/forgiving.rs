@@ -397,7 +397,7 @@ fn text_that_is_nearly_json() {
     assert_eq!(mended(&[sound.as_bytes(), b"\0\0\0"].concat()), 0);
     for member in [
         b"\"x\": [NaN, -Infinity, 1.#QNAN]".as_slice(),
-        b"\"x\": \"caf\xe9\"",
+        b"\"animations\": [{\"name\": \"caf\xe9\"}]",
         b"\"x\": \"a\nb\"",
         b"\"x\": [1,]",
         b"\"x\": \"C:\\Users\"",
