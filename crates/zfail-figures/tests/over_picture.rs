@@ -227,7 +227,7 @@ fn volumes_are_drawn_within_their_scissors() {
         let changed = pixels().zip(drawn).filter(|(_, color)| distance(*color, [GREY; 3]) > 3);
         let (within, outside): (Vec<_>, Vec<_>) = changed.partition(|([x, _], _)| {
             let x = f64::from(*x) + 0.5;
-            left - 1.0 < x && x < right + 1.0
+            left - 2.0 < x && x < right + 2.0
         });
         [within.len(), outside.len()]
     };
