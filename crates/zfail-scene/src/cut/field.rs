@@ -7,6 +7,7 @@
 //! (i, j) is its centre. Wrapping makes the plane a torus, a cylinder or a plane whose border goes on for ever.
 
 use glam::DVec2;
+use std::borrow::Cow;
 use zfail_plan::scene::{Filter, Image, Texture, Wrap};
 
 /// Where a clamped texture ends after all, in texels beyond its border: farther out than any coordinate that is cut.
@@ -20,6 +21,11 @@ pub(super) struct Axis {
 }
 
 impl Axis {
+    /// So many texels of a plane that does not repeat itself.
+    pub fn of_length(texels: i64) -> Self {
+        Self { texels, wrap: Wrap::Clamp }
+    }
+
     /// After how many texels everything repeats, if it does.
     pub fn period(&self) -> Option<f64> {
         match self.wrap {
@@ -80,9 +86,9 @@ impl Axis {
 }
 
 /// Alpha over the plane.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct AlphaField<'a> {
-    image: &'a Image,
+    image: Cow<'a, Image>,
     /// Along x and y.
     pub axes: [Axis; 2],
     /// How it goes from node to node.
@@ -90,14 +96,17 @@ pub(super) struct AlphaField<'a> {
 }
 
 impl<'a> AlphaField<'a> {
-    /// The alpha of `image` as `texture` samples it in close-up.
-    pub fn new(image: &'a Image, texture: &Texture) -> Self {
+    /// The alpha of `image` as `texture` samples it in close-up, of the whole or thinned to a half so many times.
+    pub fn new(image: &'a Image, texture: &Texture, halvings: u32) -> Self {
         let axis = |texels: u32, wrap| Axis { texels: i64::from(texels), wrap };
-        Self {
-            image,
-            axes: [axis(image.width, texture.wrap_u), axis(image.height, texture.wrap_v)],
-            filter: texture.mag,
-        }
+        let image = if halvings == 0 { Cow::Borrowed(image) } else { Cow::Owned(thinned(image, halvings)) };
+        let axes = [axis(image.width, texture.wrap_u), axis(image.height, texture.wrap_v)];
+        Self { image, axes, filter: texture.mag }
+    }
+
+    /// Width and height of the image, texels.
+    pub fn size(&self) -> DVec2 {
+        DVec2::from(self.axes.map(|axis| axis.texels()))
     }
 
     /// Alpha at a node, 0 to 255; less where nothing is.
@@ -123,4 +132,35 @@ impl<'a> AlphaField<'a> {
         let (x, y) = (self.axes[0].texel(i) as usize, self.axes[1].texel(j) as usize);
         self.image.rgba.get((y * self.image.width as usize + x) * 4 + 3).map_or(0.0, |&alpha| f64::from(alpha))
     }
+}
+
+/// A smaller image of one pixel out of each block, as if by chance: so much of it is there as of the whole, be it noise or
+/// a regular dither, and at every cutoff.
+fn thinned(image: &Image, halvings: u32) -> Image {
+    let length = |pixels: u32| pixels.checked_shr(halvings).unwrap_or(0).max(1);
+    let (width, height) = (length(image.width), length(image.height));
+    // Blocks may differ by a pixel where the sides are no powers of two.
+    let pick = |k: u32, from: u32, to: u32, chance: u64| {
+        let start = |k: u32| u64::from(k) * u64::from(from) / u64::from(to);
+        start(k) + chance % (start(k + 1) - start(k))
+    };
+    let mut rgba = Vec::with_capacity(4 * width as usize * height as usize);
+    for y in 0..height {
+        for x in 0..width {
+            let chance = mixed(u64::from(y) << 32 | u64::from(x));
+            let (i, j) =
+                (pick(x, image.width, width, chance >> 32), pick(y, image.height, height, chance & 0xffff_ffff));
+            let alpha = image.rgba.get((j * u64::from(image.width) + i) as usize * 4 + 3).copied().unwrap_or(0);
+            rgba.extend([0, 0, 0, alpha]);
+        }
+    }
+    Image { name: image.name.clone(), width, height, rgba }
+}
+
+/// A number that only looks random (the finaliser of SplitMix64).
+fn mixed(x: u64) -> u64 {
+    let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ x >> 31
 }

@@ -6,8 +6,10 @@ use super::field::Axis;
 use glam::DVec2;
 use std::ops::RangeInclusive;
 
-/// Texels along a bucket's side, about.
+/// Texels along a bucket's side, about, and things that should be in it on average; the smaller of the two holds, but no
+/// bucket is smaller than a texel.
 const BUCKET: f64 = 8.0;
+const CROWD: f64 = 8.0;
 
 /// By how much queries look farther than they have to, texels: more than coordinates are rounded by.
 const MARGIN: f64 = 1.0 / 1024.0;
@@ -21,9 +23,9 @@ struct Row {
 }
 
 impl Row {
-    fn new(axis: Axis) -> Self {
-        let length = axis.period().unwrap_or(axis.texels());
-        let buckets = (length / BUCKET).ceil().max(1.0);
+    fn new(axis: Axis, width: f64) -> Self {
+        let length = length(axis);
+        let buckets = (length / width).ceil().max(1.0);
         Self { buckets: buckets as i64, width: length / buckets, period: axis.period() }
     }
 
@@ -63,8 +65,10 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    pub fn new(axes: [Axis; 2]) -> Self {
-        let rows = axes.map(Row::new);
+    /// For about so many `things`.
+    pub fn new(axes: [Axis; 2], things: usize) -> Self {
+        let crowd = length(axes[0]) * length(axes[1]) * CROWD / things.max(1) as f64;
+        let rows = axes.map(|axis| Row::new(axis, crowd.sqrt().clamp(1.0, BUCKET)));
         Self { rows, buckets: vec![Vec::new(); (rows[0].buckets * rows[1].buckets) as usize] }
     }
 
@@ -133,6 +137,11 @@ impl Grid {
             }
         }
     }
+}
+
+/// Texels that have buckets of their own.
+fn length(axis: Axis) -> f64 {
+    axis.period().unwrap_or(axis.texels())
 }
 
 /// Least and greatest coordinates.

@@ -2,31 +2,17 @@
 //!
 //! In: a scene, a tolerance, limits. Out: the scene with its masked primitives cut, and where new vertices come from.
 
-use super::field::{AlphaField, FAR};
-use super::outline::Outline;
+use super::field::FAR;
+use super::limits::{Limits, Room, Spent, Step};
+use super::masks::{Masks, Pattern, Shape, alpha, triangles_of};
+use super::product;
 use super::triangle::{Corner, Cut, cut};
 use super::vertices::{Source, Vertices, extend, extend_alike, extend_attribute};
 use glam::DVec2;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
-use std::sync::atomic::{AtomicU64, Ordering};
-use zfail_plan::scene::{AlphaMode, Image, Material, Mesh, Primitive, Scene, Texture, TextureRef};
-
-/// What cutting a scene may cost.
-#[derive(Clone, Copy, Debug)]
-pub struct Limits {
-    /// Triangles that all cut primitives of the scene may have together.
-    pub triangles: u64,
-    /// Bytes that the new vertices and triangles may take, and the contour of a texture while it is made.
-    pub bytes: u64,
-}
-
-impl Default for Limits {
-    /// 4 million triangles and 2 GiB.
-    fn default() -> Self {
-        Self { triangles: 4_000_000, bytes: 2 << 30 }
-    }
-}
+use std::sync::atomic::Ordering;
+use zfail_plan::scene::{AlphaMode, Instance, Material, Mesh, Primitive, Scene};
 
 /// A mesh that was cut. Its first vertices are those that it had, at the same indices; the others come from `sources`.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,159 +28,52 @@ pub struct CutMesh {
 /// The least and the greatest tolerance, in texels. Others are moved into this range.
 const TOLERANCES: [f64; 2] = [1.0 / 64.0, 1024.0];
 
-/// A mesh whose cut is too large is tried again with tolerances so many times as large.
-const COARSER: [f64; 4] = [1.0, 4.0, 16.0, 64.0];
-
 /// Cuts all masked triangles of `scene` along the contour of their alpha, at most `tolerance` texels from it, and gives them
-/// opaque copies of their materials. Meshes that exceed the limits are cut more coarsely, or left as they are, with a
-/// notice.
+/// opaque copies of their materials. Meshes that exceed the limits are cut more coarsely, with a notice that says how far
+/// the cut is off, or left as they are if nothing else helps.
 ///
 /// Returns what the meshes that have changed were made from, by ascending index.
 pub fn cut_masked(scene: &mut Scene, tolerance: f64, mut limits: Limits) -> Vec<CutMesh> {
     let tolerance = if tolerance >= TOLERANCES[0] { tolerance.min(TOLERANCES[1]) } else { TOLERANCES[0] };
-    let Scene { meshes, materials, textures, images, notices, .. } = scene;
+    let Scene { meshes, materials, textures, images, instances, notices, .. } = scene;
     let masks = Masks { textures, images };
-    let mut outlines = FxHashMap::default();
+    let mut shapes = FxHashMap::default();
     let mut opaque = FxHashMap::default();
     let mut done = Vec::new();
     for (index, mesh) in meshes.iter_mut().enumerate() {
-        let patterns = masks.of(mesh, materials, notices);
+        let patterns = masks.of(mesh, materials);
         if patterns.iter().all(Option::is_none) {
             continue;
         }
-        let Some((cutting, tolerance)) = COARSER.iter().find_map(|coarser| {
-            let tolerance = tolerance * coarser;
-            let points = (limits.bytes / BYTES_PER_POINT) as usize;
-            let outlines = masks.outlines(&patterns, tolerance, points, &mut outlines)?;
-            let cutting = Cutting::new(mesh, &patterns, &outlines, limits)?;
-            if *coarser > 1.0 {
-                notices.push(format!(
-                    "mesh \"{}\": its masked triangles are cut to within {tolerance} texels only, since it would get \
-                         too many triangles",
-                    mesh.name
-                ));
-            }
-            Some((cutting, tolerance))
-        }) else {
+        let masked = mesh.primitives.iter().zip(&patterns).filter(|(_, pattern)| pattern.is_some());
+        let masked = masked.map(|(primitive, _)| triangles_of(mesh, primitive).len() as u64).sum();
+        let limit = limits.of_mesh(masked);
+        let found = Step::all(tolerance).find_map(|step| {
+            let shapes = masks.shapes(&patterns, step, &mut limits, &mut shapes)?;
+            let cutting = Cutting::new(mesh, &patterns, &shapes, step.tolerance, limit)?;
+            Some((cutting, step, step.error(stretch(&masks, &patterns, &shapes))))
+        });
+        let Some((cutting, step, error)) = found else {
             notices.push(format!(
                 "mesh \"{}\": its masked triangles would be cut into too many; they cast shadows as whole triangles",
                 mesh.name
             ));
             continue;
         };
-        limits.triangles -= cutting.added.triangles.min(limits.triangles);
-        limits.bytes -= cutting.added.bytes.min(limits.bytes);
+        if error > tolerance {
+            let size = pixel_size(&masks, mesh, &patterns) * scale(instances, index);
+            notices.push(coarser(mesh, materials, &patterns, step, [tolerance, error], size));
+        }
+        limits.take(masked, cutting.added);
         let sources = cutting.apply(mesh, |material| {
             *opaque.entry(material).or_insert_with(|| {
                 materials.push(Material { alpha: AlphaMode::Opaque, ..materials[material].clone() });
                 materials.len() - 1
             })
         });
-        done.push(CutMesh { mesh: index, sources, tolerance });
+        done.push(CutMesh { mesh: index, sources, tolerance: error });
     }
     done
-}
-
-/// Working memory per point of a contour.
-const BYTES_PER_POINT: u64 = 192;
-
-/// How a primitive is masked.
-#[derive(Clone, Copy, Debug)]
-enum Pattern {
-    /// Its alpha is the same everywhere: it is there, or it is not.
-    Even(bool),
-    /// Along the contour of a texture at a level of 0 to 255.
-    Texture(TextureRef, f64),
-}
-
-/// What masks are made of.
-struct Masks<'a> {
-    textures: &'a [Texture],
-    images: &'a [Image],
-}
-
-/// The outlines of a scene by texture, level and tolerance; `None` for those with too many points.
-type Outlines<'a> = FxHashMap<OutlineKey, Option<Outline<'a>>>;
-
-/// Texture and the bits of level and tolerance.
-type OutlineKey = (usize, u64, u64);
-
-impl<'a> Masks<'a> {
-    /// The pattern of each primitive of `mesh`, `None` for those that are not cut.
-    fn of(&self, mesh: &Mesh, materials: &[Material], notices: &mut Vec<String>) -> Vec<Option<Pattern>> {
-        let of_primitive = |primitive: &Primitive| {
-            let material = materials.get(primitive.material?)?;
-            let AlphaMode::Mask(cutoff) = material.alpha else { return None };
-            let Some(alpha) = even_alpha(mesh, primitive) else {
-                notices.push(format!(
-                    "mesh \"{}\": its vertices differ in alpha; masked triangles cast shadows as whole triangles",
-                    mesh.name
-                ));
-                return None;
-            };
-            Some(self.pattern(material, material.base_color[3] * alpha, cutoff))
-        };
-        mesh.primitives.iter().map(of_primitive).collect()
-    }
-
-    /// The pattern of a material whose texture's alpha is multiplied by `factor`.
-    fn pattern(&self, material: &Material, factor: f32, cutoff: f32) -> Pattern {
-        let solid = factor >= cutoff;
-        let Some(reference) = material.base_color_texture.filter(|r| self.field(r.texture).is_some()) else {
-            return Pattern::Even(solid);
-        };
-        let level = f64::from(cutoff) / f64::from(factor) * 255.0;
-        if cutoff <= 0.0 || !(factor > 0.0 && level <= 255.0) {
-            return Pattern::Even(solid);
-        }
-        Pattern::Texture(reference, level)
-    }
-
-    fn field(&self, texture: usize) -> Option<AlphaField<'a>> {
-        let texture = self.textures.get(texture)?;
-        Some(AlphaField::new(self.images.get(texture.image)?, texture))
-    }
-
-    /// Sees to it that `made` has the outlines of all `patterns`; `None` if one has more than `limit` points.
-    fn outlines<'m>(
-        &self,
-        patterns: &[Option<Pattern>],
-        tolerance: f64,
-        limit: usize,
-        made: &'m mut Outlines<'a>,
-    ) -> Option<Vec<Option<&'m Outline<'a>>>> {
-        let key = |pattern: &Option<Pattern>| match pattern {
-            Some(Pattern::Texture(reference, level)) => Some((reference.texture, level.to_bits(), tolerance.to_bits())),
-            _ => None,
-        };
-        for key in patterns.iter().filter_map(key) {
-            made.entry(key)
-                .or_insert_with(|| Outline::new(self.field(key.0)?, f64::from_bits(key.1), tolerance, limit))
-                .as_ref()?;
-        }
-        let made = &*made;
-        Some(patterns.iter().map(|pattern| made.get(&key(pattern)?)?.as_ref()).collect())
-    }
-}
-
-/// The alpha of a primitive's vertices if it is the same for all.
-fn even_alpha(mesh: &Mesh, primitive: &Primitive) -> Option<f32> {
-    let mut vertices = triangles_of(mesh, primitive).iter().flatten();
-    let alpha = |&v: &u32| mesh.colors.get(v as usize).map_or(1.0, |color| color[3]);
-    let first = vertices.next().map_or(1.0, alpha);
-    vertices.all(|v| alpha(v) == first).then_some(first)
-}
-
-fn triangles_of<'m>(mesh: &'m Mesh, primitive: &Primitive) -> &'m [[u32; 3]] {
-    let range = primitive.triangles.start as usize..primitive.triangles.end as usize;
-    mesh.triangles.get(range).unwrap_or(&[])
-}
-
-/// What is spent while a mesh is cut.
-#[derive(Clone, Copy, Debug, Default)]
-struct Spent {
-    triangles: u64,
-    bytes: u64,
 }
 
 /// A mesh with its masked primitives cut.
@@ -212,42 +91,53 @@ impl Cutting {
     fn new(
         mesh: &Mesh,
         patterns: &[Option<Pattern>],
-        outlines: &[Option<&Outline<'_>>],
-        limits: Limits,
+        shapes: &[Option<&Shape<'_>>],
+        tolerance: f64,
+        limit: Spent,
     ) -> Option<Self> {
         /// Bytes of a vertex with its source, and of a triangle.
         const VERTEX: u64 = (size_of::<[f32; 18]>() + size_of::<Source>()) as u64;
         const TRIANGLE: u64 = size_of::<[u32; 3]>() as u64;
-        let room = Room::new(limits);
+        let room = Room::new(limit);
+        let planes: Vec<_> = patterns
+            .iter()
+            .zip(shapes)
+            .map(|(pattern, &shape)| Some(Plane { mesh, pattern: pattern.as_ref()?, shape, tolerance, room: &room }))
+            .collect();
+        let cut_ones = || mesh.primitives.iter().zip(&planes).filter_map(|(p, plane)| Some((p, plane.as_ref()?)));
+        // Before any triangle is cut, since cutting takes much longer.
+        let expected = Room::new(limit);
+        for (primitive, plane) in cut_ones() {
+            let triangles = triangles_of(mesh, primitive);
+            triangles
+                .par_iter()
+                .map(|&t| Room::take(&expected.triangles, plane.expected(t)?))
+                .collect::<Option<()>>()?;
+        }
         let mut vertices = Vertices::new(mesh);
         let mut all = Vec::with_capacity(mesh.triangles.len());
         let mut primitives = Vec::with_capacity(mesh.primitives.len());
         let mut added = 0;
-        for ((primitive, pattern), &outline) in mesh.primitives.iter().zip(patterns).zip(outlines) {
+        for (primitive, plane) in mesh.primitives.iter().zip(&planes) {
             let start = all.len();
             let triangles = triangles_of(mesh, primitive);
-            match (pattern, outline) {
-                (None, _) | (Some(Pattern::Even(true)), _) => all.extend_from_slice(triangles),
-                (Some(Pattern::Even(false)), _) => {}
-                (Some(Pattern::Texture(reference, _)), outline) => {
-                    let plane = Plane { mesh, reference, outline: outline?, room: &room };
-                    let cuts: Vec<Cut> = triangles.par_iter().map(|&t| plane.cut(t)).collect::<Option<_>>()?;
-                    for (&triangle, cut) in triangles.iter().zip(&cuts) {
-                        match cut {
-                            Cut::Whole => all.push(triangle),
-                            Cut::Nothing => {}
-                            Cut::Pieces(pieces) => all.extend(vertices.of_pieces(triangle, pieces)),
-                        }
+            if let Some(plane) = plane {
+                let cuts: Vec<Cut> = triangles.par_iter().map(|&t| plane.cut(t)).collect::<Option<_>>()?;
+                for (&triangle, cut) in triangles.iter().zip(&cuts) {
+                    match cut {
+                        Cut::Whole => all.push(triangle),
+                        Cut::Nothing => {}
+                        Cut::Pieces(pieces) => all.extend(vertices.of_pieces(triangle, pieces)),
                     }
                 }
-            }
-            if pattern.is_some() {
                 added += (all.len() - start) as u64;
+            } else {
+                all.extend_from_slice(triangles);
             }
             primitives.push(Primitive { triangles: start as u32..all.len() as u32, material: primitive.material });
         }
         let bytes = VERTEX * vertices.sources.len() as u64 + TRIANGLE * added;
-        let fits = mesh.positions.len() + vertices.sources.len() < 1 << 30 && bytes <= limits.bytes;
+        let fits = mesh.positions.len() + vertices.sources.len() < 1 << 30 && bytes <= limit.bytes;
         let cut = patterns.iter().map(Option::is_some).collect();
         let spent = Spent { triangles: added, bytes };
         fits.then_some(Self { triangles: all, primitives, cut, sources: vertices.sources, added: spent })
@@ -272,44 +162,47 @@ impl Cutting {
     }
 }
 
-/// What is left to spend on a mesh.
-struct Room {
-    triangles: AtomicU64,
-    /// Buckets of an outline to be looked into.
-    buckets: AtomicU64,
-}
-
-impl Room {
-    fn new(limits: Limits) -> Self {
-        /// Looking into a bucket takes some 10 ns.
-        const BUCKETS: u64 = 1 << 28;
-        Self { triangles: limits.triangles.into(), buckets: BUCKETS.into() }
-    }
-
-    fn take(of: &AtomicU64, amount: u64) -> Option<()> {
-        of.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(amount)).ok().map(|_| ())
-    }
-}
-
 /// A primitive on the plane of its mask.
 struct Plane<'a> {
     mesh: &'a Mesh,
-    reference: &'a TextureRef,
-    outline: &'a Outline<'a>,
+    pattern: &'a Pattern,
+    shape: Option<&'a Shape<'a>>,
+    tolerance: f64,
     room: &'a Room,
 }
 
 impl Plane<'_> {
-    /// What the outline leaves of a triangle; `None` if there is no room for it.
-    fn cut(&self, triangle: [u32; 3]) -> Option<Cut> {
-        let corners = triangle.map(|v| Corner { position: self.mesh.positions[v as usize], texel: self.texel(v) });
-        let texels = corners.map(|corner| corner.texel);
-        // Also false where a coordinate is no number.
-        if !texels.iter().all(|texel| texel.abs().max_element() <= FAR / 4.0) {
-            return None;
+    /// About how many pieces a triangle will be cut into: there is about one for each segment of the outline. `None` if
+    /// there is no room for the work.
+    fn expected(&self, triangle: [u32; 3]) -> Option<u64> {
+        let texels = self.corners(triangle)?.map(|corner| corner.texel);
+        match self.shape {
+            None => Some(1),
+            Some(Shape::Outline(outline)) => {
+                Room::take(&self.room.places, outline.effort(texels) as u64)?;
+                Some(1 + outline.near(texels).len() as u64)
+            }
+            Some(Shape::Field(_)) => {
+                Room::take(&self.room.places, product::effort(texels) as u64)?;
+                Some(1)
+            }
         }
-        Room::take(&self.room.buckets, self.outline.effort(texels) as u64)?;
-        let cut = cut(self.outline, corners);
+    }
+
+    /// What is left of a triangle; `None` if there is no room for it.
+    fn cut(&self, triangle: [u32; 3]) -> Option<Cut> {
+        let cut = match (self.pattern, self.shape) {
+            (Pattern::Even(true), _) => return Some(Cut::Whole),
+            (Pattern::Even(false), _) => return Some(Cut::Nothing),
+            (Pattern::Texture(..), Some(Shape::Outline(outline))) => cut(outline, self.corners(triangle)?),
+            (&Pattern::Product(_, level), shape) => {
+                let field = shape.and_then(|shape| if let Shape::Field(field) = shape { Some(field) } else { None });
+                let alphas = triangle.map(|v| f64::from(alpha(self.mesh, v)));
+                let most = self.room.triangles.load(Ordering::Relaxed) as usize;
+                product::cut(field, level, self.tolerance, self.corners(triangle)?, alphas, most)?
+            }
+            (Pattern::Texture(..), _) => return None,
+        };
         let pieces = match &cut {
             Cut::Pieces(pieces) => pieces.len() as u64,
             Cut::Whole => 1,
@@ -319,11 +212,76 @@ impl Plane<'_> {
         Some(cut)
     }
 
-    /// Where a vertex lies on the plane.
-    fn texel(&self, vertex: u32) -> DVec2 {
-        let uv = if self.reference.uv_set == 0 { &self.mesh.uv0 } else { &self.mesh.uv1 };
-        let [u, v] = uv.get(vertex as usize).copied().unwrap_or_default().map(f64::from);
-        let [x, y] = self.reference.uv_from_mesh.map(|[a, b, c]| f64::from(a) * u + f64::from(b) * v + f64::from(c));
-        DVec2::new(x, y) * self.outline.size()
+    /// The corners of a triangle; `None` if one is too far away on the plane to be cut.
+    fn corners(&self, triangle: [u32; 3]) -> Option<[Corner; 3]> {
+        let size = self.shape.map_or(DVec2::ONE, Shape::size);
+        let corner = |v: u32| Corner {
+            position: self.mesh.positions[v as usize],
+            texel: self.pattern.place(self.mesh, v) * size,
+        };
+        let corners = triangle.map(corner);
+        // Also false where a coordinate is no number.
+        corners.iter().all(|corner| corner.texel.abs().max_element() <= FAR / 4.0).then_some(corners)
     }
+}
+
+/// How many pixels of a texture are one texel of its halved image, in the direction in which that is more.
+fn stretch(masks: &Masks<'_>, patterns: &[Option<Pattern>], shapes: &[Option<&Shape<'_>>]) -> f64 {
+    let of_one = |(pattern, shape): (&Option<Pattern>, &Option<&Shape<'_>>)| {
+        let whole = masks.size(pattern.as_ref()?.reference()?)?;
+        Some((whole / shape.as_ref()?.size()).max_element())
+    };
+    patterns.iter().zip(shapes).filter_map(of_one).fold(1.0, f64::max)
+}
+
+/// The length of a pixel on the masked surfaces of a mesh, in units of the mesh, on the average; 0 if they have no area on
+/// the texture.
+fn pixel_size(masks: &Masks<'_>, mesh: &Mesh, patterns: &[Option<Pattern>]) -> f64 {
+    let (mut surface, mut pixels) = (0.0, 0.0);
+    for (primitive, pattern) in mesh.primitives.iter().zip(patterns) {
+        let Some(pattern) = pattern else { continue };
+        let Some(size) = pattern.reference().and_then(|reference| masks.size(reference)) else { continue };
+        for &triangle in triangles_of(mesh, primitive) {
+            let [a, b, c] = triangle.map(|v| mesh.position(v));
+            surface += (b - a).cross(c - a).length();
+            let [a, b, c] = triangle.map(|v| pattern.place(mesh, v) * size);
+            pixels += (b - a).perp_dot(c - a).abs();
+        }
+    }
+    if pixels > 0.0 { (surface / pixels).sqrt() } else { 0.0 }
+}
+
+/// The largest scale at which a mesh is shown, on the average of all directions.
+fn scale(instances: &[Instance], mesh: usize) -> f64 {
+    let shown = instances.iter().filter(|instance| instance.mesh == mesh);
+    shown.map(|instance| instance.world_from_object.matrix3.determinant().abs().cbrt()).fold(0.0, f64::max)
+}
+
+/// Says how far off a cut is, in pixels and where `size` is known in metres, and what does better.
+fn coarser(
+    mesh: &Mesh,
+    materials: &[Material],
+    patterns: &[Option<Pattern>],
+    step: Step,
+    [wanted, error]: [f64; 2],
+    size: f64,
+) -> String {
+    let masked = mesh.primitives.iter().zip(patterns).find(|(_, pattern)| pattern.is_some());
+    let material = masked.and_then(|(primitive, _)| materials.get(primitive.material?));
+    let mut text = format!("mesh \"{}\", material \"{}\": ", mesh.name, material.map_or("", |m| &m.name));
+    text += "its mask has more detail than can be cut";
+    if step.halvings > 0 {
+        text += &format!("; with one of {0} by {0} pixels", 1_u64 << step.halvings);
+    }
+    text += &format!(", its edges are off by up to {} pixels of the texture", short(error));
+    if size > 0.0 && size.is_finite() {
+        text += &format!(" (about {} m)", short(error * size));
+    }
+    text + &format!(" instead of {}; --alpha-shadows solid draws it as it is and casts whole triangles", short(wanted))
+}
+
+/// A number with two digits that count.
+fn short(x: f64) -> String {
+    let digits = (1.0 - x.log10().floor()).clamp(0.0, 9.0) as usize;
+    format!("{x:.digits$}")
 }

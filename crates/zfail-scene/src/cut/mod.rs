@@ -5,6 +5,8 @@
 //!
 //! Data flow: `field` (alpha as a function) -> `trace` (its contour) -> `simplify` (fewer points) -> `outline` (to be asked
 //! by place, with the buckets of `grid`) -> `triangle` (one triangle's pieces) -> `vertices` -> `mesh` (a whole mesh).
+//! Where vertices differ in alpha, `product` takes the place of the first four, triangle by triangle: `edge` (crossings of
+//! edges) -> `cells` (the contour in between). `masks` says what a mesh is cut along, `limits` what that may cost.
 //!
 //! # What the bound says
 //! A contour is where alpha on the texture's largest level, bilinearly interpolated (or not, if the texture is magnified
@@ -13,24 +15,32 @@
 //! polygon, and the two have the same shape: no hole closes, no island vanishes, nothing joins or parts.
 //!
 //! Positions are then interpolated in `f64` and rounded to `f32`. On an edge between two triangles both have the same
-//! points, bit for bit, if they have the same texture coordinates there.
+//! points, bit for bit, if they have the same texture coordinates and the same alpha there.
 //!
-//! # What stays as it is
-//! Masked triangles whose vertices differ in alpha, and all that would exceed the [`Limits`]; a notice says so. Triangles
-//! without area on the texture are kept or left out as a whole, as alpha in their middle is.
+//! # Where it does not hold
+//! What would exceed the [`Limits`] is cut more coarsely, and loses details where it has no end of them; a notice states the
+//! error (decision 0025). For triangles without area on the texture, its alpha in their middle counts everywhere.
 
+mod cells;
+mod edge;
 mod field;
 mod grid;
+mod limits;
+mod masks;
 mod mesh;
 mod outline;
+mod product;
 mod simplify;
 mod trace;
 mod triangle;
 mod vertices;
 
 #[cfg(test)]
+mod product_tests;
+#[cfg(test)]
 mod tests;
 
-pub use mesh::{CutMesh, Limits, cut_masked};
+pub use limits::Limits;
+pub use mesh::{CutMesh, cut_masked};
 pub(crate) use vertices::extend;
 pub use vertices::{Source, derive};

@@ -16,6 +16,7 @@ pub(super) struct Outline<'a> {
     /// With the region on their left.
     segments: Vec<[DVec2; 2]>,
     grid: Grid,
+    traced: usize,
 }
 
 impl<'a> Outline<'a> {
@@ -26,17 +27,18 @@ impl<'a> Outline<'a> {
         const BENDS: f64 = 0.25;
         let level = generic(level);
         let rings = trace(&field, level, BENDS * tolerance, limit.min(u32::MAX as usize))?;
+        let traced = rings.iter().map(|ring| ring.points.len()).sum();
         let rings = simplify(&rings, field.axes, (1.0 - BENDS) * tolerance);
         let mut segments = Vec::new();
         for ring in &rings {
             segments.extend(ring.points.windows(2).map(|ends| [ends[0], ends[1]]));
             segments.push([ring.points[ring.points.len() - 1], ring.points[0] + ring.closing]);
         }
-        let mut grid = Grid::new(field.axes);
+        let mut grid = Grid::new(field.axes, segments.len());
         for (number, &[a, b]) in segments.iter().enumerate() {
             grid.put(number as u32, [a, b, b]);
         }
-        Some(Self { field, level, segments, grid })
+        Some(Self { field, level, segments, grid, traced })
     }
 
     /// The segments in one period of the plane.
@@ -45,9 +47,14 @@ impl<'a> Outline<'a> {
         &self.segments
     }
 
+    /// How many points the contour had before it was simplified.
+    pub fn traced(&self) -> usize {
+        self.traced
+    }
+
     /// Width and height of the image, texels.
     pub fn size(&self) -> DVec2 {
-        DVec2::from(self.field.axes.map(|axis| axis.texels()))
+        self.field.size()
     }
 
     /// Work that it takes to find the segments near a triangle, in buckets.
@@ -70,8 +77,9 @@ impl<'a> Outline<'a> {
 
     /// Whether `point` is in the region. It should not lie on the contour.
     pub fn contains(&self, point: DVec2) -> bool {
-        // The first segment in the direction of +x tells: its left is the region.
-        let mut nearest = (f64::INFINITY, false);
+        // The first segment in the direction of +x tells: its left is the region. Where several meet on the way, it is the
+        // one that is first just above.
+        let mut nearest = (f64::INFINITY, f64::INFINITY, false);
         self.grid.walk(point, |bucket_end, things| {
             for (segment, shift) in things {
                 let [a, b] = self.segments[segment as usize].map(|end| end + shift);
@@ -79,12 +87,13 @@ impl<'a> Outline<'a> {
                     continue;
                 }
                 let x = a.x + (b.x - a.x) * (point.y - a.y) / (b.y - a.y);
-                if x >= point.x && x < nearest.0 {
-                    nearest = (x, b.y > a.y);
+                let lean = (b.x - a.x) / (b.y - a.y);
+                if x >= point.x && (x, lean) < (nearest.0, nearest.1) {
+                    nearest = (x, lean, b.y > a.y);
                 }
             }
             nearest.0 <= bucket_end
         });
-        if nearest.0 < f64::INFINITY { nearest.1 } else { self.field.at(point) >= self.level }
+        if nearest.0 < f64::INFINITY { nearest.2 } else { self.field.at(point) >= self.level }
     }
 }

@@ -1,8 +1,8 @@
 //! Fewer points for the same contour.
 //!
-//! In: closed polygons that touch at most in points. Out: the same polygons with points left out. Every contour stays
-//! within the tolerance of its original, in the Hausdorff distance, and the polygons still touch at most in points:
-//! nothing is joined, parted, turned inside out or left out.
+//! In: closed polygons, and lines whose ends have to stay, that touch at most in points. Out: the same with points left
+//! out. Every contour stays within the tolerance of its original, in the Hausdorff distance, and they still touch at most
+//! in points: nothing is joined, parted, turned inside out or left out.
 //!
 //! A point is taken out of the way if the points left out between its neighbours, itself included, are within the
 //! tolerance of the segment between these, and if no other point lies in the triangle that the contour sweeps over. The
@@ -19,6 +19,16 @@ use std::collections::BinaryHeap;
 
 /// The `rings` on a plane with these `axes`, simplified to within `tolerance` texels.
 pub(super) fn simplify(rings: &[Ring], axes: [Axis; 2], tolerance: f64) -> Vec<Ring> {
+    let left = kept(rings, axes, tolerance);
+    let simple = |(ring, kept): (&Ring, Vec<usize>)| {
+        let points = kept.into_iter().map(|k| ring.points[k]).collect();
+        Ring { points, ..*ring }
+    };
+    rings.iter().zip(left).map(simple).collect()
+}
+
+/// Which points of each of the `rings` are left if they are simplified, ascending.
+pub(super) fn kept(rings: &[Ring], axes: [Axis; 2], tolerance: f64) -> Vec<Vec<usize>> {
     let mut simplifier = Simplifier::new(rings, axes, tolerance);
     for point in 0..simplifier.links.len() as u32 {
         simplifier.propose(point);
@@ -29,8 +39,7 @@ pub(super) fn simplify(rings: &[Ring], axes: [Axis; 2], tolerance: f64) -> Vec<R
         }
     }
     let left = |(r, ring): (usize, &Ring)| {
-        let kept = (0..ring.points.len()).filter(|&k| simplifier.links[simplifier.starts[r] + k].kept);
-        Ring { points: kept.map(|k| ring.points[k]).collect(), closing: ring.closing }
+        (0..ring.points.len()).filter(|&k| simplifier.links[simplifier.starts[r] + k].kept).collect()
     };
     rings.iter().enumerate().map(left).collect()
 }
@@ -62,7 +71,8 @@ struct Simplifier<'a> {
 
 impl<'a> Simplifier<'a> {
     fn new(rings: &'a [Ring], axes: [Axis; 2], tolerance: f64) -> Self {
-        let (mut starts, mut links, mut grid) = (Vec::new(), Vec::new(), Grid::new(axes));
+        let points = rings.iter().map(|ring| ring.points.len()).sum();
+        let (mut starts, mut links, mut grid) = (Vec::new(), Vec::with_capacity(points), Grid::new(axes, points));
         for (r, ring) in rings.iter().enumerate() {
             starts.push(links.len());
             for &point in &ring.points {
@@ -82,7 +92,7 @@ impl<'a> Simplifier<'a> {
 
     /// The position of the `k`-th point of a ring, in any lap.
     fn position(&self, ring: usize, k: i64) -> DVec2 {
-        let Ring { points, closing } = &self.rings[ring];
+        let Ring { points, closing, .. } = &self.rings[ring];
         let length = points.len() as i64;
         points[k.rem_euclid(length) as usize] + *closing * k.div_euclid(length) as f64
     }
@@ -104,7 +114,11 @@ impl<'a> Simplifier<'a> {
         /// Deviations that differ by less than a step count as equal, and short spans go first: that keeps long
         /// straight contours from being gone over from one end to the other again and again.
         const STEPS: f64 = 16.0;
-        let (ring, _) = self.place(point);
+        let (ring, k) = self.place(point);
+        let Ring { points, open, .. } = &self.rings[ring];
+        if *open && (k == 0 || k + 1 == points.len() as i64) {
+            return;
+        }
         let [before, after] = self.neighbours(point);
         let ends = [before, after].map(|k| self.position(ring, k));
         let deviation =
@@ -119,8 +133,7 @@ impl<'a> Simplifier<'a> {
 
     fn leave_out(&mut self, point: u32) {
         let (ring, _) = self.place(point);
-        let least = if self.rings[ring].closing == DVec2::ZERO { 3 } else { 1 };
-        if self.kept[ring] <= least || self.sweeps_over_a_point(point) {
+        if self.kept[ring] <= self.rings[ring].least || self.sweeps_over_a_point(point) {
             return;
         }
         let neighbours = self.neighbours(point);

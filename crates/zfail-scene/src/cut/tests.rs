@@ -1,30 +1,33 @@
 //! The outline is where alpha says, triangles keep what is inside of it, and meshes stay whole.
 
 use super::field::AlphaField;
+use super::limits::Step;
 use super::outline::Outline;
 use super::simplify::simplify;
 use super::trace::{generic, trace};
 use super::triangle::{Corner, Cut, UNIT, Weights, cut};
 use super::{Limits, Source, cut_masked, derive};
-use glam::{DVec2, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 use rustc_hash::FxHashMap;
-use zfail_plan::scene::{AlphaMode, Filter, Image, Material, Mesh, Primitive, Scene, Texture, TextureRef, Wrap};
+use zfail_plan::scene::{
+    AlphaMode, Filter, Image, Instance, Material, Mesh, Primitive, Scene, Texture, TextureRef, Wrap,
+};
 
 /// A number in 0..1 that only looks random.
-fn random(seed: &mut u64) -> f64 {
+pub(super) fn random(seed: &mut u64) -> f64 {
     *seed = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let mut z = (*seed ^ *seed >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
     ((z ^ z >> 31) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-fn image([width, height]: [u32; 2], mut alpha: impl FnMut(f64, f64) -> f64) -> Image {
+pub(super) fn image([width, height]: [u32; 2], mut alpha: impl FnMut(f64, f64) -> f64) -> Image {
     let texels = (0..height).flat_map(|y| (0..width).map(move |x| (f64::from(x) + 0.5, f64::from(y) + 0.5)));
     let rgba = texels.flat_map(|(x, y)| [0, 0, 0, alpha(x, y).clamp(0.0, 255.0) as u8]).collect();
     Image { name: "mask".into(), width, height, rgba }
 }
 
-fn texture(wrap: [Wrap; 2], mag: Filter) -> Texture {
+pub(super) fn texture(wrap: [Wrap; 2], mag: Filter) -> Texture {
     Texture { image: 0, wrap_u: wrap[0], wrap_v: wrap[1], mag, min: mag, mipmaps: true }
 }
 
@@ -37,7 +40,7 @@ fn disc() -> Image {
     image([64, 64], |x, y| 127.5 + 64.0 * (RADIUS - (x - 32.0).hypot(y - 32.0)))
 }
 
-fn noise(size: [u32; 2], seed: &mut u64) -> Image {
+pub(super) fn noise(size: [u32; 2], seed: &mut u64) -> Image {
     image(size, |_, _| 256.0 * random(seed))
 }
 
@@ -65,7 +68,7 @@ fn one_sided_hausdorff(from: &[[DVec2; 2]], to: &[[DVec2; 2]], period: f64) -> f
 #[test]
 fn a_disc_is_round_to_within_the_tolerance() {
     let (image, texture) = (disc(), texture([Wrap::Clamp; 2], Filter::Linear));
-    let outline = |tolerance| Outline::new(AlphaField::new(&image, &texture), 127.5, tolerance, 10_000).unwrap();
+    let outline = |tolerance| Outline::new(AlphaField::new(&image, &texture, 0), 127.5, tolerance, 10_000).unwrap();
     // Bytes and bilinear interpolation leave the disc this far from a circle.
     const ROUNDNESS: f64 = 0.03;
     let worst = |tolerance: f64| {
@@ -87,14 +90,34 @@ fn polygons_are_near_the_curve_and_the_curve_near_the_polygons() {
     let mut seed = 1;
     let image = noise([24, 24], &mut seed);
     let texture = texture(REPEAT, Filter::Linear);
-    let field = AlphaField::new(&image, &texture);
-    let segments = |tolerance| Outline::new(field, 140.0, tolerance, 100_000).unwrap().segments().to_vec();
+    let field = AlphaField::new(&image, &texture, 0);
+    let segments = |tolerance| Outline::new(field.clone(), 140.0, tolerance, 100_000).unwrap().segments().to_vec();
     let (fine, middle, coarse) = (segments(1.0 / 64.0), segments(0.5), segments(8.0));
     for other in [[&fine, &middle], [&middle, &fine]] {
         let distance = one_sided_hausdorff(other[0], other[1], 24.0);
         assert!(distance <= 0.5 + 1.0 / 64.0, "{distance}");
     }
     assert!(one_sided_hausdorff(&fine, &coarse, 24.0) > 0.6, "a coarser one is caught");
+}
+
+/// Contours of pixels that are there or not meet in points half-way between them, at the height of many a middle.
+#[test]
+fn contours_that_touch_have_sides() {
+    let mut seed = 4;
+    let texture = texture(REPEAT, Filter::Linear);
+    let wrong_at = |image: &Image, level: f64| {
+        let field = AlphaField::new(image, &texture, 0);
+        let outline = Outline::new(field.clone(), 127.5, 1.0 / 64.0, 1_000_000).unwrap();
+        let at = |k: i32| DVec2::new(f64::from(k % 128) / 8.0 + 1.0 / 64.0, f64::from(k / 128) / 8.0);
+        let is_clear = |p: DVec2| (field.at(p) - level).abs() > 12.0;
+        let wrong = |p: DVec2| outline.contains(p) != (field.at(p) >= level);
+        (0..128 * 128).map(at).filter(|&p| is_clear(p) && wrong(p)).count()
+    };
+    for _ in 0..20 {
+        let dither = image([16, 16], |_, _| if random(&mut seed) < 0.5 { 0.0 } else { 255.0 });
+        assert_eq!(wrong_at(&dither, 127.5), 0);
+        assert!(wrong_at(&dither, 160.0) > 0, "another level is caught");
+    }
 }
 
 /// Pairs of segments that cross, on a plane that repeats after `period` texels.
@@ -120,7 +143,7 @@ fn no_contours_cross_and_none_is_lost() {
     for (filter, level) in [(Filter::Linear, 100.0), (Filter::Linear, 128.0), (Filter::Nearest, 128.0)] {
         let image = noise([16, 16], &mut seed);
         let texture = texture(REPEAT, filter);
-        let field = AlphaField::new(&image, &texture);
+        let field = AlphaField::new(&image, &texture, 0);
         let rings = trace(&field, generic(level), 0.1, 100_000).unwrap();
         for tolerance in [0.2, 1.0, 100.0] {
             let simple = simplify(&rings, field.axes, tolerance);
@@ -140,7 +163,7 @@ fn no_contours_cross_and_none_is_lost() {
 }
 
 /// Triangles of pieces on the plane of the texture.
-fn on_plane(pieces: &[[Weights; 3]], texels: [DVec2; 3]) -> Vec<[DVec2; 3]> {
+pub(super) fn on_plane(pieces: &[[Weights; 3]], texels: [DVec2; 3]) -> Vec<[DVec2; 3]> {
     let place = |weights: Weights| {
         let [u, v, w] = weights.map(|w| f64::from(w) / f64::from(UNIT));
         texels[0] * u + texels[1] * v + texels[2] * w
@@ -151,7 +174,7 @@ fn on_plane(pieces: &[[Weights; 3]], texels: [DVec2; 3]) -> Vec<[DVec2; 3]> {
 /// How many of some points in random triangles a cut along `drawn` keeps or leaves out wrongly by `expected`; points
 /// within a few hundredths of a texel of the contour do not count. Also how many were checked.
 fn misjudged(drawn: (&AlphaField<'_>, f64), expected: (&AlphaField<'_>, f64), seed: &mut u64) -> [usize; 2] {
-    let outline = Outline::new(*drawn.0, drawn.1, 1.0 / 64.0, 1_000_000).unwrap();
+    let outline = Outline::new(drawn.0.clone(), drawn.1, 1.0 / 64.0, 1_000_000).unwrap();
     let (field, level) = (expected.0, generic(expected.1));
     let mut counts = [0; 2];
     for _ in 0..20 {
@@ -206,7 +229,7 @@ fn every_wrapping_and_filter_is_cut_where_alpha_says() {
         for &v in &wraps {
             for filter in [Filter::Linear, Filter::Nearest] {
                 let image = noise([7, 5], &mut seed);
-                let field = |wrap_u, level: f64| (AlphaField::new(&image, &texture([wrap_u, v], filter)), level);
+                let field = |wrap_u, level: f64| (AlphaField::new(&image, &texture([wrap_u, v], filter), 0), level);
                 let (truth, other, level) = (field(u, 128.0), field(wraps[(i + 1) % 3], 128.0), 90.0);
                 let [wrong, checked] = misjudged((&truth.0, 128.0), (&truth.0, 128.0), &mut seed);
                 assert!(wrong == 0 && checked > 1500, "{u:?} {v:?} {filter:?}: {wrong} of {checked}");
@@ -220,7 +243,7 @@ fn every_wrapping_and_filter_is_cut_where_alpha_says() {
 }
 
 /// A square of 1 m with its texture `tiles` times across, as two triangles, which share no vertices if `seam`.
-fn square(image: Image, tiles: f32, seam: bool) -> Scene {
+pub(super) fn square(image: Image, tiles: f32, seam: bool) -> Scene {
     let at = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let (corners, triangles) = if seam {
         (vec![0, 1, 2, 0, 2, 3], vec![[0, 1, 2], [3, 4, 5]])
@@ -242,7 +265,7 @@ fn square(image: Image, tiles: f32, seam: bool) -> Scene {
     Scene { meshes: vec![mesh], materials: vec![material], textures, images: vec![image], ..Scene::default() }
 }
 
-fn area(mesh: &Mesh) -> f64 {
+pub(super) fn area(mesh: &Mesh) -> f64 {
     let of = |&[a, b, c]: &[u32; 3]| {
         let [a, b, c] = [a, b, c].map(|v| mesh.position(v));
         DVec3::Z.dot((b - a).cross(c - a)) / 2.0
@@ -251,7 +274,7 @@ fn area(mesh: &Mesh) -> f64 {
 }
 
 /// Edges that only one triangle has, by position, as pairs of points.
-fn open_edges(mesh: &Mesh) -> Vec<[DVec2; 2]> {
+pub(super) fn open_edges(mesh: &Mesh) -> Vec<[DVec2; 2]> {
     let mut uses: FxHashMap<[[u32; 3]; 2], i32> = FxHashMap::default();
     for triangle in &mesh.triangles {
         for i in 0..3 {
@@ -341,29 +364,92 @@ fn masked_materials_become_opaque_where_they_are_cut() {
 fn meshes_beyond_the_limits_are_cut_coarsely_or_not_at_all() {
     let cut = |limits: Limits| {
         let mut scene = square(disc(), 4.0, false);
+        scene.instances.push(Instance {
+            name: "square".into(),
+            mesh: 0,
+            world_from_object: DAffine3::from_scale(DVec3::splat(2.0)),
+            casts_shadow: true,
+        });
         let cuts = cut_masked(&mut scene, 0.05, limits);
         (cuts.first().map(|cut| cut.tolerance), scene.meshes[0].triangles.len() as u64, scene.notices)
     };
     let (tolerance, all, notices) = cut(Limits::default());
     assert!(tolerance == Some(0.05) && all > 500 && notices.is_empty());
-    let (tolerance, some, notices) = cut(Limits { triangles: all / 2, ..Limits::default() });
-    assert!(tolerance > Some(0.05) && some <= all / 2 && notices.len() == 1, "{tolerance:?}, {notices:?}");
-    for few in [Limits { triangles: 20, ..Limits::default() }, Limits { bytes: 500, ..Limits::default() }] {
-        let (tolerance, whole, notices) = cut(few);
-        assert!(tolerance.is_none() && whole == 2 && notices[0].contains("whole triangles"), "{notices:?}");
+    for part in [2, 4, 16] {
+        // Of what a scene may have beyond its growth, a mesh gets half.
+        let (tolerance, some, notices) = cut(Limits { triangles: 2 * all / part, growth: 0, ..Limits::default() });
+        assert!(tolerance > Some(0.05) && some <= all / part && notices.len() == 1, "{tolerance:?}, {notices:?}");
+        assert!(notices[0].contains("--alpha-shadows solid") && notices[0].contains(" m)"), "{notices:?}");
     }
+    let (tolerance, grown, _) = cut(Limits { triangles: 0, growth: all, ..Limits::default() });
+    assert!((tolerance, grown) == (Some(0.05), all));
+    let (tolerance, whole, notices) = cut(Limits { triangles: 0, growth: 0, ..Limits::default() });
+    assert!(tolerance.is_none() && whole == 2 && notices[0].contains("whole triangles"), "{notices:?}");
+}
+
+/// Noise, dither and a board of single pixels take as long as one likes unless they are counted first.
+#[test]
+fn detail_without_end_is_thinned_out() {
+    let mut seed = 11;
+    let limits = Limits { triangles: 20_000, growth: 64, points: 40_000, ..Limits::default() };
+    let board = image([256, 200], |x, y| if (x + y).rem_euclid(2.0) < 1.0 { 255.0 } else { 0.0 });
+    for (image, tiles) in [(noise([301, 257], &mut seed), 1.0), (noise([64, 64], &mut seed), 30.0), (board, 1.0)] {
+        let mut scene = square(image, tiles, false);
+        let cuts = cut_masked(&mut scene, 1.0, limits);
+        assert!(scene.meshes[0].triangles.len() <= 10_128);
+        assert!(cuts[0].tolerance > 2.0 && scene.notices.len() == 1, "{:?}", scene.notices);
+    }
+}
+
+/// What is drawn of a thinned mask is near to what is there: the bound that the notice states.
+#[test]
+fn edges_of_thinned_masks_are_near_true_ones() {
+    let (disc, texture) = (disc(), texture([Wrap::Clamp; 2], Filter::Linear));
+    let worst = |halvings: u32, tolerance: f64| {
+        let field = AlphaField::new(&disc, &texture, halvings);
+        let outline = Outline::new(field, 127.5, tolerance, 10_000).unwrap();
+        let stretch = f64::from(halvings).exp2();
+        let off = |p: DVec2| ((stretch * p).distance(DVec2::splat(32.0)) - RADIUS).abs();
+        outline.segments().iter().flat_map(|&[a, b]| [off(a), off(a.midpoint(b))]).fold(0.0, f64::max)
+    };
+    for halvings in 1..4 {
+        let bound = Step { halvings, tolerance: 1.0 }.error(f64::from(halvings).exp2());
+        let off = worst(halvings, 1.0);
+        assert!(off <= bound && off > 0.0, "{halvings}: {off} beyond {bound}");
+    }
+    let bound = Step { halvings: 1, tolerance: 1.0 }.error(2.0);
+    assert!(worst(1, 30.0) > bound, "a coarser one is caught: {} within {bound}", worst(1, 30.0));
+}
+
+/// As much stays there as was, where an average would be all or nothing.
+#[test]
+fn thinned_masks_keep_their_share() {
+    let mut seed = 12;
+    let texture = texture(REPEAT, Filter::Nearest);
+    let share = |image: &Image, halvings: u32| {
+        let field = AlphaField::new(image, &texture, halvings);
+        let [w, h] = field.size().to_array().map(|x| x as i64);
+        let there = (0..w * h).filter(|k| field.at_node([k % w, k / w]) >= 100.0).count();
+        ([w, h], there as f64 / (w * h) as f64)
+    };
+    let board = image([128, 128], |x, y| if (x + y).rem_euclid(2.0) < 1.0 { 255.0 } else { 0.0 });
+    let odd = noise([401, 203], &mut seed);
+    assert_eq!((share(&odd, 2).0, share(&odd, 30).0), ([100, 50], [1, 1]));
+    for (image, expected) in [(&board, 0.5), (&odd, 156.0 / 256.0)] {
+        for halvings in 0..3 {
+            let (_, share) = share(image, halvings);
+            assert!((share - expected).abs() < 0.04, "{halvings}: {share} instead of {expected}");
+        }
+    }
+    assert!((share(&odd, 1).1 - 0.5).abs() > 0.04, "another share is caught");
 }
 
 #[test]
 fn what_cannot_be_cut_stays() {
-    let mut shaded = square(disc(), 1.0, false);
-    shaded.meshes[0].colors = (0..4).map(|k| [1.0, 1.0, 1.0, 0.25 * k as f32]).collect();
     let mut far = square(disc(), 1e30, false);
     far.meshes[0].uv0[1] = [f32::MAX, f32::MIN];
-    for mut scene in [shaded, far] {
-        assert!(cut_masked(&mut scene, 1.0, Limits::default()).is_empty());
-        assert_eq!((scene.meshes[0].triangles.len(), scene.notices.len()), (2, 1));
-    }
+    assert!(cut_masked(&mut far, 1.0, Limits::default()).is_empty());
+    assert_eq!((far.meshes[0].triangles.len(), far.notices.len()), (2, 1));
     let mut nothing = square(disc(), 1.0, false);
     nothing.meshes[0].uv0.clear();
     cut_masked(&mut nothing, f64::NAN, Limits::default());

@@ -19,6 +19,10 @@ pub(super) struct Ring {
     pub points: Vec<DVec2>,
     /// How far one lap leads: zero, or whole periods for a contour that goes around the torus.
     pub closing: DVec2,
+    /// Whether it is no ring but a line from its first point to its last, which stay.
+    pub open: bool,
+    /// How many points it needs.
+    pub least: usize,
 }
 
 /// All contours are made of points with this many fractional bits, so that moving them by periods is exact.
@@ -40,8 +44,29 @@ pub(super) fn generic(level: f64) -> f64 {
 /// The contour of `field` at a [`generic`] `level`, with chords at most `flatness` texels from the curve; `None` if it has
 /// more than `limit` points.
 pub(super) fn trace(field: &AlphaField<'_>, level: f64, flatness: f64, limit: usize) -> Option<Vec<Ring>> {
+    let mut crossed = 0;
+    cells(field, level, |_, corners| {
+        crossed += usize::from(corners.contains(&true) && corners.contains(&false));
+        Some(())
+    });
+    if crossed > limit {
+        return None;
+    }
     let mut tracer = Tracer { field, level, flatness, left: limit, seen: FxHashSet::default() };
     let mut rings = Vec::new();
+    cells(field, level, |cell, corners| {
+        for side in 0..4 {
+            if corners[side] && !corners[(side + 1) % 4] && !tracer.seen.contains(&(cell, side)) {
+                rings.push(tracer.ring(cell, side)?);
+            }
+        }
+        Some(())
+    })?;
+    Some(rings)
+}
+
+/// Calls `visit` with every cell, and with whether its corners are inside, until it returns `None`.
+fn cells(field: &AlphaField<'_>, level: f64, mut visit: impl FnMut([i64; 2], [bool; 4]) -> Option<()>) -> Option<()> {
     let [columns, rows] = [field.axes[0].cells(), field.axes[1].cells()];
     let inside = |j| columns.clone().chain([columns.end]).map(move |i| field.at_node([i, j]) >= level);
     let mut upper: Vec<bool> = inside(rows.start).collect();
@@ -51,15 +76,10 @@ pub(super) fn trace(field: &AlphaField<'_>, level: f64, flatness: f64, limit: us
         upper.clear();
         upper.extend(inside(j + 1));
         for (i, k) in columns.clone().zip(0..) {
-            let corners = [lower[k], lower[k + 1], upper[k + 1], upper[k]];
-            for side in 0..4 {
-                if corners[side] && !corners[(side + 1) % 4] && !tracer.seen.contains(&([i, j], side)) {
-                    rings.push(tracer.ring([i, j], side)?);
-                }
-            }
+            visit([i, j], [lower[k], lower[k + 1], upper[k + 1], upper[k]])?;
         }
     }
-    Some(rings)
+    Some(())
 }
 
 /// Side `s` of a cell goes from its corner `s` to corner `s + 1`, counter-clockwise from node `[i, j]` on. A contour enters
@@ -97,7 +117,8 @@ impl Tracer<'_> {
             side = (exit + 2) % 4;
         }
         let closing = DVec2::new((cell[0] - first[0]) as f64, (cell[1] - first[1]) as f64);
-        Some(Ring { points, closing })
+        let least = if closing == DVec2::ZERO { 3 } else { 1 };
+        Some(Ring { points, closing, open: false, least })
     }
 
     fn home(&self, [i, j]: [i64; 2]) -> [i64; 2] {

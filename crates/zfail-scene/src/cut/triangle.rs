@@ -9,7 +9,9 @@
 use super::outline::Outline;
 use glam::DVec2;
 use robust::{Coord, orient2d};
-use spade::{ConstrainedDelaunayTriangulation, InsertionError, Point2, Triangulation};
+use rustc_hash::FxHashSet;
+use spade::handles::{FaceHandle, InnerTag};
+use spade::{CdtEdge, ConstrainedDelaunayTriangulation, InsertionError, Point2, Triangulation};
 
 /// The sum of a point's weights.
 pub(super) const UNIT: u32 = 1 << 26;
@@ -64,11 +66,31 @@ pub(super) fn cut(outline: &Outline<'_>, corners: [Corner; 3]) -> Cut {
         return whole();
     }
     // The triangulation refuses only coordinates that are not whole numbers of this size.
-    triangulate(&points, &chords).map_or_else(|_| whole(), |mesh| Cut::Pieces(mesh.inside(outline, texels)))
+    let inside = |region: &[Face<'_>]| outline.contains(on_plane(texels, middle(region)));
+    triangulate(&points, &chords).map_or_else(|_| whole(), |mesh| Cut::Pieces(mesh.pieces(inside)))
+}
+
+/// The triangles of the region that lies to the left of `chords`, which may only meet at their ends, or to their right;
+/// with `points` as corners, too. Where no chord tells, `contains` is asked for the middle of a triangle.
+pub(super) fn fill(
+    points: &[Weights],
+    chords: &[[Weights; 2]],
+    left: bool,
+    contains: impl Fn([f64; 2]) -> bool,
+) -> Option<Vec<[Weights; 3]>> {
+    let known: FxHashSet<[Weights; 2]> = chords.iter().copied().collect();
+    let inside = |region: &[Face<'_>]| {
+        let edges = region.iter().flat_map(|face| face.adjacent_edges()).filter(|edge| edge.is_constraint_edge());
+        let side =
+            |[from, to]: [Weights; 2]| i64::from(known.contains(&[from, to])) - i64::from(known.contains(&[to, from]));
+        let sides: i64 = edges.map(|edge| side(edge.positions().map(weights))).sum();
+        if sides == 0 { contains(middle(region)) } else { (sides > 0) == left }
+    };
+    Some(triangulate(points, chords).ok()?.pieces(inside))
 }
 
 /// Twice the area of the triangle `a`, `b`, `c`, with its exact sign: above 0 where it turns left.
-fn side(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+pub(super) fn side(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     let coord = |p: DVec2| Coord { x: p.x, y: p.y };
     orient2d(coord(a), coord(b), coord(c))
 }
@@ -133,19 +155,28 @@ fn crossings(p: DVec2, q: DVec2, [a, b]: [DVec2; 2], mut found: impl FnMut(f64, 
 
 /// The weights of a point strictly inside of the triangle, none of them 0.
 fn interior(corners: &[Corner; 3], area: f64, point: DVec2) -> Option<Weights> {
-    let sides: [f64; 3] =
-        std::array::from_fn(|i| side(corners[(i + 1) % 3].texel, corners[(i + 2) % 3].texel, point) * area.signum());
-    if sides.iter().any(|&side| side <= 0.0) {
-        return None;
-    }
-    let whole = |side: f64, greatest: u32| ((side / area.abs() * f64::from(UNIT)).round() as u32).clamp(1, greatest);
+    let sides = sides(corners, point);
+    sides.iter().all(|&side| side * area.signum() > 0.0).then(|| nearest_inside(sides, area))
+}
+
+/// On which side of each edge a point lies, by the corner opposite of the edge: twice the area of the two, which has the
+/// sign of the triangle's area inside. The sign is exact.
+pub(super) fn sides(corners: &[Corner; 3], point: DVec2) -> [f64; 3] {
+    std::array::from_fn(|i| side(corners[(i + 1) % 3].texel, corners[(i + 2) % 3].texel, point))
+}
+
+/// Weights near the point with these [`sides`], none of them 0.
+pub(super) fn nearest_inside(sides: [f64; 3], area: f64) -> Weights {
+    let whole = |side: f64, greatest: u32| ((side / area * f64::from(UNIT)).round() as u32).clamp(1, greatest);
     let first = whole(sides[1], UNIT - 2);
     let second = whole(sides[2], UNIT - first - 1);
-    Some([UNIT - first - second, first, second])
+    [UNIT - first - second, first, second]
 }
 
 /// A triangulation of the lattice points of a triangle.
 struct Planar(ConstrainedDelaunayTriangulation<Point2<f64>>);
+
+type Face<'a> = FaceHandle<'a, InnerTag, Point2<f64>, (), CdtEdge<()>, ()>;
 
 /// Triangulates the whole triangle with its corners and `points` so that every chord is made of edges.
 fn triangulate(points: &[Weights], chords: &[[Weights; 2]]) -> Result<Planar, InsertionError> {
@@ -166,8 +197,8 @@ fn triangulate(points: &[Weights], chords: &[[Weights; 2]]) -> Result<Planar, In
 }
 
 impl Planar {
-    /// The triangles inside of the outline. Chords bound regions; each is in or out as the middle of its largest triangle.
-    fn inside(&self, outline: &Outline<'_>, texels: [DVec2; 3]) -> Vec<[Weights; 3]> {
+    /// The triangles of the regions that are `inside`; chords lie between regions.
+    fn pieces(&self, inside: impl Fn(&[Face<'_>]) -> bool) -> Vec<[Weights; 3]> {
         let mut pieces = Vec::new();
         let mut seen = vec![false; self.0.num_all_faces()];
         for seed in self.0.inner_faces() {
@@ -186,17 +217,25 @@ impl Planar {
                     }
                 }
             }
-            let largest = region.iter().max_by(|a, b| a.area().total_cmp(&b.area())).unwrap_or(&seed);
-            let middle = largest.center();
-            let [second, third] = [middle.x, middle.y].map(|w| w / f64::from(UNIT));
-            let point = texels[0] + (texels[1] - texels[0]) * second + (texels[2] - texels[0]) * third;
-            if outline.contains(point) {
+            if inside(&region) {
                 pieces.extend(region.iter().map(|face| face.vertices().map(|vertex| weights(vertex.position()))));
             }
         }
         pieces.retain(|[a, b, c]| a != b && b != c && c != a);
         pieces
     }
+}
+
+/// The second and third weight of the middle of a region's largest triangle, as parts of 1.
+fn middle(region: &[Face<'_>]) -> [f64; 2] {
+    let largest = region.iter().max_by(|a, b| a.area().total_cmp(&b.area()));
+    let middle = largest.map_or(Point2::new(0.0, 0.0), |face| face.center());
+    [middle.x, middle.y].map(|w| w / f64::from(UNIT))
+}
+
+/// The point of a triangle with these weights of its second and third corner.
+pub(super) fn on_plane([a, b, c]: [DVec2; 3], [second, third]: [f64; 2]) -> DVec2 {
+    a + (b - a) * second + (c - a) * third
 }
 
 /// A place of the triangulation as weights.
