@@ -98,7 +98,7 @@ pub struct Render {
     /// Light everything, as if nothing cast a shadow.
     #[arg(long)]
     pub no_shadows: bool,
-    /// Stops by which radiance is scaled (0 keeps it), or 'auto' to suit the picture, or of --frames the whole animation.
+    /// Stops by which radiance is scaled (0 keeps it), or 'auto' to suit the picture, or all frames together.
     #[arg(long, value_name = "EV|auto", default_value = "auto", allow_negative_numbers = true)]
     #[arg(value_parser = parse_exposure)]
     pub exposure: Exposure,

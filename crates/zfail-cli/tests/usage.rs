@@ -200,6 +200,9 @@ fn help_lists_every_option_of_the_contract() {
             "--alpha-shadows <off|solid|cut=PIXELS>",
             "--blended-shadows",
             "--variant <NAME|N>",
+            "--sun <AZIMUTH,ELEVATION>",
+            "--sky <auto|none>",
+            "--ground <auto|none|HEIGHT>",
             "--overlay <KIND>",
             "--overlay-from <YAW,PITCH[,ZOOM]>",
         ]
