@@ -69,10 +69,10 @@ fn surroundings_are_switched_and_come_back() {
 
 #[test]
 fn a_camera_that_was_made_for_the_scene_follows_the_window() {
-    let mut bare = builtin::animated("room").expect("it is built in");
+    let mut bare = builtin::animated("anemone").expect("it is built in");
     bare.scene.cameras.clear();
     zfail_scene::Setting::default().complete(&mut bare);
-    let mut session = Session::new("room.glb".to_owned(), bare, Look::default());
+    let mut session = Session::new("anemone.glb".to_owned(), bare, Look::default());
     let place = |session: &Session| session.rig.camera.world_from_view.translation;
     session.fit(1.6);
     let wide = place(&session);
