@@ -60,7 +60,7 @@ fn main() -> ExitCode {
 fn demo() -> Result<(), String> {
     let gallery = root().join("gallery");
     let status = cargo()
-        .args(["run", "--package", "zfail-cli", "--no-default-features", "--", "gallery"])
+        .args(["run", "--profile", "demo", "--package", "zfail-cli", "--no-default-features", "--", "gallery"])
         .arg(&gallery)
         .status()
         .map_err(|e| format!("cannot start cargo: {e}"))?;
