@@ -79,26 +79,32 @@ impl Proof {
         self.lights.iter().find(|proof| proof.light == light)
     }
 
-    /// Says that what is out of reach everywhere is not lacking any more.
+    /// Says that what is out of reach everywhere is not lacking any more, nor what a light would have to light if all that it
+    /// reaches lies in shadow: shadows are what is to be proved.
     pub fn conclude(&mut self) {
         let reached = || self.lights.iter().filter(|light| light.reaches);
-        self.enough = reached().next().is_some() && reached().all(LightProof::is_proved);
+        self.enough = reached().next().is_some() && reached().all(|light| light.is_proved() || light.is_dark());
     }
 
     /// What is proved, or why it is too little: the last line of a report.
     pub fn sentence(&self) -> String {
         let views = if self.views == 1 { "1 view".to_owned() } else { format!("{} views", self.views) };
         let seen = format!("0 wrong among {} certain pixels of {views}", self.pixels);
-        let beyond: Vec<String> = self.lights.iter().filter(|l| !l.reaches).map(LightProof::title).collect();
-        let beyond = match beyond.len() {
-            0 => String::new(),
-            _ => format!("; {} out of reach of all that was seen", beyond.join(", ")),
+        let titles = |of: fn(&LightProof) -> bool, what: &str| {
+            let titles: Vec<String> = self.lights.iter().filter(|l| of(l)).map(LightProof::title).collect();
+            if titles.is_empty() { String::new() } else { format!("; {} {what}", titles.join(", ")) }
         };
+        let beyond = titles(|l| !l.reaches, "out of reach of all that was seen");
         if self.enough {
-            let least = |of: fn(&LightProof) -> usize| self.lights.iter().filter(|l| l.reaches).map(of).min();
+            let dark = titles(LightProof::is_dark, "lights nothing that was seen");
+            let proved = || self.lights.iter().filter(|l| l.is_proved());
+            if proved().next().is_none() {
+                return format!("proved: {seen}, all in shadow{dark}{beyond}");
+            }
+            let least = |of: fn(&LightProof) -> usize| proved().map(of).min();
             let (lit, shadowed) = (least(|l| l.lit).unwrap_or(0), least(|l| l.shadowed).unwrap_or(0));
             return format!(
-                "proved: {seen}; every light within reach has at least {lit} of them lit and {shadowed} in shadow{beyond}"
+                "proved: {seen}; every light within reach has at least {lit} of them lit and {shadowed} in shadow{dark}{beyond}"
             );
         }
         let short: Vec<&LightProof> = self.lights.iter().filter(|l| l.reaches && !l.is_proved()).collect();
@@ -118,6 +124,11 @@ impl LightProof {
     /// Whether it was seen lit and in shadow often enough.
     pub fn is_proved(&self) -> bool {
         self.lit >= ENOUGH && self.shadowed >= ENOUGH
+    }
+
+    /// Whether all that it reaches lies in shadow, seen often enough.
+    fn is_dark(&self) -> bool {
+        self.lit == 0 && self.shadowed >= ENOUGH && self.left_out.is_none()
     }
 
     fn title(&self) -> String {
@@ -198,5 +209,13 @@ mod tests {
         fine.add(&[seen(0, 900, 900, Some("too fine"))]);
         fine.conclude();
         assert!(!fine.enough && fine.sentence().contains("leaves out too much (too fine)"), "{}", fine.sentence());
+        for (lit, shadowed, enough) in [(0, 900, true), (1, 900, false), (900, 0, false)] {
+            let mut one_sided = proof(1);
+            one_sided.add(&[seen(0, lit, shadowed, None)]);
+            assert!(!one_sided.enough, "other views are looked at first");
+            one_sided.conclude();
+            assert_eq!(one_sided.enough, enough, "{lit} lit, {shadowed} in shadow");
+            assert_eq!(one_sided.sentence().contains("lights nothing that was seen"), enough);
+        }
     }
 }
