@@ -34,6 +34,9 @@ pub struct LightProof {
     pub shadowed: usize,
     /// Whether it reaches anything that was seen.
     pub reaches: bool,
+    /// Whether any view has a lit pixel, those that leave out much included.
+    #[serde(skip)]
+    lights_something: bool,
     /// Why views did not count, if any did not.
     left_out: Option<String>,
 }
@@ -47,6 +50,7 @@ impl Proof {
             lit: 0,
             shadowed: 0,
             reaches: false,
+            lights_something: false,
             left_out: None,
         };
         Self { enough: false, views: 0, pixels: 0, lights: lights.iter().map(of).collect() }
@@ -58,6 +62,7 @@ impl Proof {
         for judged in lights.iter().map(|light| &light.judged) {
             let Some(proof) = self.lights.iter_mut().find(|proof| proof.light == judged.light) else { continue };
             proof.reaches |= judged.checked > 0;
+            proof.lights_something |= judged.lit > 0;
             if let Some(why) = &judged.leaves_out {
                 proof.left_out = Some(why.clone());
                 continue;
@@ -128,7 +133,7 @@ impl LightProof {
 
     /// Whether all that it reaches lies in shadow, seen often enough.
     fn is_dark(&self) -> bool {
-        self.lit == 0 && self.shadowed >= ENOUGH && self.left_out.is_none()
+        !self.lights_something && self.shadowed >= ENOUGH
     }
 
     fn title(&self) -> String {
@@ -169,8 +174,15 @@ mod tests {
     }
 
     fn proof(lights: usize) -> Proof {
-        let of =
-            |light| LightProof { light, name: "lamp".to_owned(), lit: 0, shadowed: 0, reaches: false, left_out: None };
+        let of = |light| LightProof {
+            light,
+            name: "lamp".to_owned(),
+            lit: 0,
+            shadowed: 0,
+            reaches: false,
+            lights_something: false,
+            left_out: None,
+        };
         Proof { enough: false, views: 0, pixels: 0, lights: (0..lights).map(of).collect() }
     }
 
