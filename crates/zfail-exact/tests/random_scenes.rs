@@ -1,7 +1,7 @@
 //! Random scenes of every kind: no pixel may be wrong.
 //!
 //! The techniques take turns. `ZFAIL_SCENES` sets how many scenes in total (default 320), `ZFAIL_SEED` the first seed (default 1),
-//! `ZFAIL_KIND` limits them to one kind, `ZFAIL_SIZE=WxH` sets the size of the images.
+//! `ZFAIL_KIND` limits them to one kind, `ZFAIL_SIZE=WxH` sets the size of the images, some of which are odd otherwise.
 
 use std::{env, fmt::Write as _, str::FromStr};
 use zfail_exact::{bench, kinds::Kind, recipe::Recipe, shrink::shrink, tally::Tally};
@@ -11,10 +11,12 @@ fn setting<T: FromStr>(name: &str, default: T) -> T {
     env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
 }
 
-fn size() -> [u32; 2] {
-    let text: String = setting("ZFAIL_SIZE", "256x160".to_owned());
-    let (w, h) = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?))).unwrap_or((256, 160));
-    [w, h]
+/// The size of the image of a scene.
+fn size(seed: u64) -> [u32; 2] {
+    let text: String = setting("ZFAIL_SIZE", String::new());
+    let given = text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+    // In turn with the techniques, so that each meets every size.
+    given.unwrap_or([[256, 160], [257, 160], [255, 161], [199, 203]][(seed / 4 % 4) as usize])
 }
 
 #[test]
@@ -25,11 +27,12 @@ fn no_pixel_is_wrong() {
     let scenes: u64 = setting("ZFAIL_SCENES", 320);
     let first: u64 = setting("ZFAIL_SEED", 1);
     let (mut masks, mut counts) = (Tally::default(), Tally::default());
+    let (mut images, mut rejected) = (0, 0);
     let mut failures = String::new();
     for &kind in &kinds {
         let (mut mask, mut count) = (Tally::default(), Tally::default());
         for seed in first..first + scenes.div_ceil(kinds.len() as u64) {
-            let recipe = kind.recipe(seed, size());
+            let recipe = kind.recipe(seed, size(seed));
             let technique = Technique::ALL[(seed % Technique::ALL.len() as u64) as usize];
             // The best technique counts by tiles in every second of its scenes, and in the others finds silhouettes on the
             // device.
@@ -48,6 +51,11 @@ fn no_pixel_is_wrong() {
         }
         println!("{:13} masks  {mask}", format!("{kind:?}"));
         println!("{:13} counts {count}", "");
+        // These are made of what is smaller than a pixel in most of their images.
+        if !matches!(kind, Kind::Shards | Kind::Planted | Kind::OrthographicCut) {
+            images += mask.images.max(count.images);
+            rejected += mask.rejected.max(count.rejected);
+        }
         masks.merge(&mask);
         counts.merge(&count);
     }
@@ -55,10 +63,7 @@ fn no_pixel_is_wrong() {
     println!("all           counts {counts}");
     assert!(failures.is_empty(), "{failures}");
     if only.is_empty() {
-        assert!(
-            masks.rejected * 6 < masks.images && counts.rejected * 5 < counts.images,
-            "too many scenes are too fine"
-        );
+        assert!(rejected * 10 < images, "too many scenes are too fine: {rejected} of {images} images");
         assert!(masks.lit.min(masks.shadowed) * 20 > masks.checked, "too little is lit or shadowed");
         assert!(counts.max_count > 255, "no count wraps");
     }

@@ -1,7 +1,9 @@
 //! Which draws of a prepared frame the tile pass counts instead of the rasteriser.
 //!
 //! In: the plan, and what a device's times are. Out: the tile pass filled, and for every light and draw which way it goes.
-//! Only draws that consist of sides before the visible surface can go there: z-pass without caps.
+//! Only draws that consist of sides before the visible surface can go there: z-pass without caps. Lights in several batches
+//! stay with the rasteriser: their volumes end within others, so that errors of rounding could cancel in one sum, which
+//! folding each batch by itself prevents (decision record 0021).
 
 use crate::arena::Arena;
 use crate::cost::CostModel;
@@ -84,7 +86,10 @@ impl Tiled {
             };
             let always = measures.tiles == Tiles::Always;
             let pixels = light.scissor.map_or(0, |[_, _, width, height]| width * height);
-            if draws().next().is_none() || !always && !costs.may_tile(draws().map(most_pairs).sum(), pixels) {
+            if light.batches.len() > 1
+                || draws().next().is_none()
+                || !always && !costs.may_tile(draws().map(most_pairs).sum(), pixels)
+            {
                 continue;
             }
             let rasterised: u32 = light

@@ -7,7 +7,7 @@ use zfail_exact::kinds::Kind;
 use zfail_render::{Gpu, GpuOptions, Settings, Technique};
 
 /// Kind, seed, size and story.
-const SCENES: [(Kind, u64, [u32; 2], &str); 8] = [
+const SCENES: [(Kind, u64, [u32; 2], &str); 9] = [
     (Kind::Soup, 1, [192, 120], "a culled twin's light cap lay before the visible triangle by rounding"),
     (Kind::Soup, 1003, [256, 160], "the same"),
     (Kind::NonManifold, 1073, [256, 160], "the same, in a sheet with a back"),
@@ -30,6 +30,12 @@ const SCENES: [(Kind, u64, [u32; 2], &str); 8] = [
         910_012,
         [256, 160],
         "two planar volumes had sides along an edge in the midst of a lit slope, whose depths had to be equal",
+    ),
+    (
+        Kind::Orthographic,
+        4,
+        [257, 160],
+        "a box without thickness bounds its shadow by each plane twice, and the second cut lost half of what can be seen",
     ),
 ];
 
