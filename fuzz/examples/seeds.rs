@@ -1,10 +1,10 @@
 //! Writes the seeds: small files that between them use everything that loaders know.
 //!
 //! In: a folder. Out: `TARGET/NAME` in it for every target and seed. Run it as
-//! `cargo run --manifest-path fuzz/Cargo.toml --example seeds -- crates/zfail-scene/tests/corpus/seeds`.
+//! `cargo run --manifest-path fuzz/Cargo.toml --example seeds -- crates/zfail-files/tests/corpus/seeds`.
 
 #[allow(dead_code, reason = "the loader's tests need more of it")]
-#[path = "../../crates/zfail-scene/tests/read/build.rs"]
+#[path = "../../crates/zfail-files/tests/read/build.rs"]
 mod build;
 
 use base64::Engine;
@@ -63,7 +63,7 @@ fn check(folder: &Path) -> Result<()> {
     for entry in fs::read_dir(folder.join("glb"))? {
         let path = entry?.path();
         let bytes = fs::read(&path)?;
-        let loaded = build::load_bytes(&bytes, &zfail_scene::Limits::default());
+        let loaded = build::load_bytes(&bytes, &zfail_files::Limits::default());
         let notices = loaded.map_err(|e| Error::other(format!("{}: {e}", path.display())))?.notices;
         println!("{}: {} bytes, notices {notices:?}", path.display(), bytes.len());
     }

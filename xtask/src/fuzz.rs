@@ -54,7 +54,7 @@ pub fn run(seconds: &str, targets: &[&str]) -> Result<(), String> {
 fn fuzz_target(program: &Path, target: &str, seconds: u64) -> Result<bool, String> {
     println!("\n+ {target} for {seconds} s");
     let learned = format!("fuzz/corpus/{target}");
-    let seeds = ["seeds", "found"].map(|kind| format!("crates/zfail-scene/tests/corpus/{kind}/{target}"));
+    let seeds = ["seeds", "found"].map(|kind| format!("crates/zfail-files/tests/corpus/{kind}/{target}"));
     for folder in [root().join(&learned), root().join("fuzz/artifacts")] {
         fs::create_dir_all(&folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
     }

@@ -2,7 +2,7 @@
 
 use crate::html::escape;
 use std::fmt::Write;
-use zfail_plan::scene::Scene;
+use zfail_scene::Scene;
 
 const STYLE: &str = "\
 body { background: #16181c; color: #d8dade; font: 15px/1.5 system-ui, sans-serif; margin: 2em; }
@@ -45,7 +45,7 @@ impl ContactSheet {
 #[cfg(test)]
 mod tests {
     use super::ContactSheet;
-    use zfail_plan::scene::Scene;
+    use zfail_scene::Scene;
 
     #[test]
     fn names_and_descriptions_are_text_and_not_markup() {

@@ -7,10 +7,10 @@ use crate::error::Error;
 use crate::input;
 use crate::output::{self, Outputs};
 use crate::render;
-use zfail_plan::scene::Scene;
+use zfail_builtin::Entry;
+use zfail_files::write;
 use zfail_render::{Gpu, Renderer, Settings};
-use zfail_scene::builtin::{self, Entry};
-use zfail_scene::{cut, write};
+use zfail_scene::{Scene, cut};
 
 /// Renders everything, then writes everything.
 ///
@@ -20,7 +20,7 @@ pub fn run(args: &args::Gallery) -> Result<(), Error> {
     output::check_folder(&args.folder)?;
     let gpu = input::gpu(&args.device)?;
     let scenes: Vec<(&Entry, Scene)> =
-        builtin::SCENES.iter().filter_map(|entry| Some((entry, builtin::scene(entry.name)?))).collect();
+        zfail_builtin::SCENES.iter().filter_map(|entry| Some((entry, zfail_builtin::scene(entry.name)?))).collect();
 
     let pictures = scenes.iter().map(|(_, scene)| scene.cameras.len()).sum();
     let progress = console::progress(pictures, args.verbosity.quiet);

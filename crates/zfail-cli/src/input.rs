@@ -5,11 +5,10 @@ use crate::console;
 use crate::error::Error;
 use crate::names;
 use std::path::Path;
-use zfail_plan::scene::{Camera, MaskCasting, Scene};
+use zfail_files::{Fault, FileInfo};
 use zfail_plan::view::View;
 use zfail_render::{Gpu, GpuOptions};
-use zfail_scene::read::Fault;
-use zfail_scene::{Animated, FileInfo, GroundChoice, SavedView, SavedViewError, Setting, builtin, cut};
+use zfail_scene::{Animated, Camera, GroundChoice, MaskCasting, SavedView, SavedViewError, Scene, Setting, cut};
 
 const BUILTIN: &str = "builtin:";
 
@@ -38,11 +37,12 @@ fn shape_shadows(animated: &mut Animated, masks: AlphaShadows) {
 
 fn open(scene: &str, loading: &Loading) -> Result<(Animated, Option<FileInfo>), Error> {
     if let Some(name) = scene.strip_prefix(BUILTIN) {
-        let scene = builtin::animated(name).ok_or_else(|| names::unknown("built-in scene", name, &builtin_names()))?;
+        let scene =
+            zfail_builtin::animated(name).ok_or_else(|| names::unknown("built-in scene", name, &builtin_names()))?;
         return Ok((scene, None));
     }
     let path = Path::new(scene);
-    match zfail_scene::load_variant(path, &loading.limits(), loading.variant.as_deref()) {
+    match zfail_files::load_variant(path, &loading.limits(), loading.variant.as_deref()) {
         Ok((scene, info)) => Ok((scene, Some(info))),
         Err(e) if !path.exists() && builtin_names().contains(&scene) => {
             Err(Error::failed(format!("{}; the built-in scene of that name is '{BUILTIN}{scene}'", chain(&e))))
@@ -138,7 +138,7 @@ pub fn animation(animated: &Animated, moment: &Moment) -> Result<usize, Error> {
 
 /// Names of the built-in scenes.
 pub fn builtin_names() -> Vec<&'static str> {
-    builtin::SCENES.iter().map(|entry| entry.name).collect()
+    zfail_builtin::SCENES.iter().map(|entry| entry.name).collect()
 }
 
 /// Index of the camera that `wanted` numbers or names.
@@ -232,7 +232,8 @@ pub fn chain(error: &dyn std::error::Error) -> String {
 #[cfg(test)]
 mod tests {
     use super::{effort, lights};
-    use zfail_plan::scene::{Light, LightKind, LightShape, Scene};
+    use zfail_plan::light::LightKind;
+    use zfail_scene::{Light, LightShape, Scene};
 
     #[test]
     fn lights_are_chosen_by_the_numbers_of_the_file() {
@@ -252,7 +253,7 @@ mod tests {
 
     #[test]
     fn many_copies_under_many_lights_are_said_to_take_long() {
-        let mut scene = zfail_scene::builtin::scene("jail").unwrap();
+        let mut scene = zfail_builtin::scene("jail").unwrap();
         assert_eq!(effort(&scene, &[0, 1]), None);
         let copy = scene.instances[0].clone();
         let triangles = scene.meshes[copy.mesh].triangles.len();

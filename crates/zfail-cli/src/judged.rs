@@ -4,7 +4,8 @@ use crate::error::Error;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use zfail_oracle::{Doubt, Truth};
-use zfail_plan::scene::{LightKind, Scene};
+use zfail_plan::light::LightKind;
+use zfail_scene::Scene;
 
 /// A light and the pixels at which its verdict is known.
 #[derive(Clone, Debug, Serialize)]

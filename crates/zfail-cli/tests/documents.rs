@@ -9,8 +9,8 @@ use image::ImageReader;
 use std::fs;
 use std::path::{Path, PathBuf};
 use support::{has_gpu, zfail};
+use zfail_builtin::SCENES;
 use zfail_methods::Method;
-use zfail_scene::builtin::SCENES;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")

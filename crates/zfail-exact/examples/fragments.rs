@@ -8,11 +8,10 @@
 
 use std::{env, error::Error};
 use zfail_exact::kinds::Kind;
-use zfail_plan::closure;
 use zfail_plan::glam::{DMat4, DVec2, DVec3, DVec4};
 use zfail_plan::plan::{Caster, Counting, Draw, Frame, FramePlan, Planner, ShadowLight, Technique};
-use zfail_plan::scene::{Instance, Scene};
 use zfail_plan::view::View;
+use zfail_scene::{Instance, Scene};
 
 /// Faces as close as this count as being at the pixel.
 const NEAR: f64 = 1.0 / 16.0;
@@ -40,7 +39,7 @@ fn pair(text: &str, separator: char) -> Option<[u32; 2]> {
 
 fn scene(subject: &str, size: [u32; 2]) -> Result<(Scene, View), Box<dyn Error>> {
     if let Some(name) = subject.strip_prefix("builtin:") {
-        let scene = zfail_scene::builtin::scene(name).ok_or("no such scene")?;
+        let scene = zfail_builtin::scene(name).ok_or("no such scene")?;
         let view = scene.cameras[0].view(size, &scene.bounds());
         return Ok((scene, view));
     }
@@ -49,7 +48,7 @@ fn scene(subject: &str, size: [u32; 2]) -> Result<(Scene, View), Box<dyn Error>>
         let recipe = kind.recipe(seed.parse()?, size);
         return Ok((recipe.scene(), recipe.view));
     }
-    let mut scene = zfail_scene::read::load(subject.as_ref())?;
+    let mut scene = zfail_files::load(subject.as_ref())?;
     zfail_scene::complete(&mut scene);
     let view = scene.cameras[0].view(size, &scene.bounds());
     Ok((scene, view))
@@ -57,7 +56,7 @@ fn scene(subject: &str, size: [u32; 2]) -> Result<(Scene, View), Box<dyn Error>>
 
 /// Prints everything at one pixel, nearest first.
 fn list(scene: &Scene, view: &View, centre: DVec2, light: usize) -> Result<(), Box<dyn Error>> {
-    let topologies = closure::topologies(scene)?;
+    let topologies = scene.topologies()?;
     let casting = |i: &&Instance| i.casts_shadow;
     let casters: Vec<Caster<'_>> = (0..)
         .zip(scene.instances.iter().filter(casting))

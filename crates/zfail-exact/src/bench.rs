@@ -2,8 +2,10 @@
 
 use crate::recipe::Recipe;
 use zfail_oracle::{CastTable, Guards, Oracle, Report, SizeMismatch, Truth};
-use zfail_plan::{casting, closure, scene::Scene, topology::TopologyError, view::View};
+use zfail_plan::topology::TopologyError;
+use zfail_plan::view::View;
 use zfail_render::{AovKind, Aovs, Gpu, RenderError, Renderer, Settings};
+use zfail_scene::Scene;
 
 /// A scene that could not be compared.
 #[derive(Debug, thiserror::Error)]
@@ -98,9 +100,9 @@ pub fn truths(scene: &Scene, view: &View) -> Result<Vec<Truth>, BenchError> {
 /// If a mesh of the scene is invalid.
 pub fn truths_with(scene: &Scene, view: &View, guards: Guards) -> Result<Vec<Truth>, BenchError> {
     let oracle = Oracle::with_guards(scene, guards);
-    let topologies = closure::topologies(scene)?;
+    let topologies = scene.topologies()?;
     let judge = |(l, light)| {
-        let castings = casting::of_scene(scene, &topologies, l);
+        let castings = scene.castings(&topologies, l);
         oracle.judge(view, light, &CastTable::from_fn(scene, |i, t| castings[i][t].into()))
     };
     Ok(scene.lights.iter().enumerate().map(judge).collect())

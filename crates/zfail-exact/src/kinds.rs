@@ -8,11 +8,9 @@ use crate::{
     shapes::Shape,
 };
 use std::f64::consts::PI;
-use zfail_plan::{
-    glam::{DAffine3, DMat3, DQuat, DVec3},
-    scene::LightKind,
-    view::{Projection, View},
-};
+use zfail_plan::glam::{DAffine3, DMat3, DQuat, DVec3};
+use zfail_plan::light::LightKind;
+use zfail_plan::view::{Projection, View};
 
 /// What a scene is to exercise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

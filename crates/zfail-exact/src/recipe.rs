@@ -3,11 +3,10 @@
 //! In: parts, lights, a view. Out: the scene that renderer and oracle are given.
 
 use crate::{kinds::Kind, shapes::Shape};
-use zfail_plan::{
-    glam::{DAffine3, DMat3, DVec3},
-    scene::{AlphaMode, Instance, Light, LightKind, LightShape, Material, Scene},
-    view::{Projection, View},
-};
+use zfail_plan::glam::{DAffine3, DMat3, DVec3};
+use zfail_plan::light::LightKind;
+use zfail_plan::view::{Projection, View};
+use zfail_scene::{AlphaMode, Instance, Light, LightShape, Material, Scene};
 
 /// Everything a test scene is made of.
 #[derive(Clone, Debug)]

@@ -4,10 +4,8 @@
 
 use crate::random::Random;
 use std::f64::consts::{PI, TAU};
-use zfail_plan::{
-    glam::DVec3,
-    scene::{Mesh, Primitive},
-};
+use zfail_plan::glam::DVec3;
+use zfail_scene::{Mesh, Primitive};
 
 /// What a part looks like.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,9 @@
 //! The comparison must notice errors: what is rendered here is not what the oracle is asked about.
 
 use zfail_exact::{bench, kinds::Kind};
-use zfail_plan::scene::{LightKind, Scene};
+use zfail_plan::light::LightKind;
 use zfail_render::{Gpu, GpuOptions, Settings};
+use zfail_scene::Scene;
 
 /// Renders ten scenes with `change` and returns in how many the masks, and the counts, are found to be wrong.
 fn caught(change: impl Fn(&mut Scene, &mut Settings)) -> [usize; 2] {

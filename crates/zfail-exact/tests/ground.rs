@@ -6,9 +6,9 @@
 use std::{env, str::FromStr};
 use zfail_exact::{bench, kinds::Kind, recipe::Surface};
 use zfail_oracle::Pixel;
-use zfail_plan::scene::{Ground, Instance, Scene};
 use zfail_plan::view::View;
 use zfail_render::{AovKind, Aovs, Exposure, Gpu, GpuOptions, Renderer, Settings, Silhouettes, Technique, Tiles};
+use zfail_scene::{Ground, Instance, Scene};
 
 fn setting<T: FromStr>(name: &str, default: T) -> T {
     env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)

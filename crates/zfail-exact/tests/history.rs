@@ -2,9 +2,10 @@
 
 use zfail_exact::kinds::Kind;
 use zfail_plan::glam::{DAffine3, DVec3};
-use zfail_plan::scene::{LightKind, Pose, Scene};
+use zfail_plan::light::LightKind;
 use zfail_plan::view::View;
 use zfail_render::{AovKind, Gpu, GpuOptions, Renderer, Settings};
+use zfail_scene::{Pose, Scene};
 
 /// Views along a path that ends where the recipe's camera is.
 fn path(last: &View, extent: f64) -> Vec<View> {

@@ -10,7 +10,7 @@ use zfail_render::{Gpu, GpuOptions, Settings, Technique};
 #[test]
 fn the_oracle_misses_slivers_thinner_than_its_probes() {
     let gpu = Gpu::new(&GpuOptions::default()).expect("a graphics adapter");
-    let scene = zfail_scene::builtin::scene("nested").expect("a built-in scene");
+    let scene = zfail_builtin::scene("nested").expect("a built-in scene");
     let view = scene.cameras[0].view([256, 160], &scene.bounds());
     let settings = Settings { technique: Technique::EverittKilgard, ..Settings::default() };
     let rendered = bench::render(&gpu, &scene, &view, &settings).expect("images");

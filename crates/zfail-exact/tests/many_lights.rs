@@ -3,11 +3,10 @@
 
 use zfail_oracle::{CastTable, Oracle};
 use zfail_plan::glam::{DAffine3, DMat3, DVec3};
-use zfail_plan::scene::{
-    AlphaMode, Instance, Light, LightKind, LightShape, Material, Mesh, Primitive, Scene, Transmission,
-};
+use zfail_plan::light::LightKind;
 use zfail_plan::view::{Projection, View};
 use zfail_render::{Exposure, Gpu, GpuOptions, Renderer, Settings};
+use zfail_scene::{AlphaMode, Instance, Light, LightShape, Material, Mesh, Primitive, Scene, Transmission};
 
 const SIZE: [u32; 2] = [72, 54];
 

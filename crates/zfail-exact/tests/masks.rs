@@ -6,12 +6,13 @@
 use std::{env, path::PathBuf};
 use zfail_exact::{bench, kinds::Kind};
 use zfail_oracle::Report;
-use zfail_plan::scene::{
-    AlphaMode, Filter, Image, Light, LightKind, LightShape, MaskCasting, Material, Scene, Texture, TextureRef, Wrap,
-};
+use zfail_plan::light::LightKind;
 use zfail_plan::view::View;
 use zfail_render::{Gpu, GpuOptions, Settings, Tiles};
 use zfail_scene::cut::{self, cut_masked};
+use zfail_scene::{
+    AlphaMode, Filter, Image, Light, LightShape, MaskCasting, Material, Scene, Texture, TextureRef, Wrap,
+};
 
 /// Pixels of all lights that are not right in mask or count, and those left out because of a mask in front of the eye,
 /// when `drawn` is rendered and the oracle asked about `scene`.
@@ -84,7 +85,7 @@ fn no_pixel_of_cut_meshes_is_wrong() {
 #[test]
 fn no_pixel_of_foliage_is_wrong() {
     let gpu = Gpu::new(&GpuOptions::default()).expect("a graphics adapter");
-    let scene = zfail_scene::builtin::scene("foliage").expect("a built-in scene");
+    let scene = zfail_builtin::scene("foliage").expect("a built-in scene");
     let cut = cut_to_within(&scene, 1.0);
     for camera in &scene.cameras {
         let view = camera.view([256, 160], &scene.bounds());
@@ -108,7 +109,7 @@ fn no_pixel_of_flowers_is_wrong() {
         return;
     }
     let gpu = Gpu::new(&GpuOptions::default()).expect("a graphics adapter");
-    let mut scene = zfail_scene::load(&path).unwrap_or_else(|e| panic!("{e}"));
+    let mut scene = zfail_files::load(&path).unwrap_or_else(|e| panic!("{e}"));
     zfail_scene::complete(&mut scene);
     let bounds = scene.bounds();
     let position = bounds.center() + bounds.half() * zfail_plan::glam::DVec3::new(0.13, 0.41, -0.17);

@@ -10,10 +10,11 @@
 use std::{env, path::PathBuf};
 use zfail_exact::bench::{self, Images};
 use zfail_exact::tally::Tally;
+use zfail_files::Limits;
 use zfail_plan::glam::DVec3;
-use zfail_plan::scene::{Light, LightKind, LightShape, Mesh, Scene};
+use zfail_plan::light::LightKind;
 use zfail_render::{Gpu, GpuOptions, Settings, Technique, Tiles};
-use zfail_scene::{Limits, cut};
+use zfail_scene::{Light, LightShape, Mesh, Scene, cut};
 
 const MODELS: [&str; 24] = [
     "godot-room/godot-room.glb",
@@ -111,7 +112,7 @@ fn no_pixel_of_a_real_model_is_wrong() {
             println!("skipped: {model} is not there");
             continue;
         }
-        let (mut animated, _) = zfail_scene::load_animated(&path, &Limits::default()).unwrap_or_else(|e| panic!("{e}"));
+        let (mut animated, _) = zfail_files::load_animated(&path, &Limits::default()).unwrap_or_else(|e| panic!("{e}"));
         animated.cut_masked(1.0, cut::Limits::default());
         let mut scene = animated.scene.clone();
         zfail_scene::complete(&mut scene);
@@ -137,7 +138,7 @@ fn no_pixel_of_other_files_is_wrong() {
     let gpu = Gpu::new(&GpuOptions::default()).expect("a graphics adapter");
     let (mut masks, mut failures) = (Tally::default(), Vec::new());
     for path in env::split_paths(&files) {
-        let (mut animated, _) = zfail_scene::load_animated(&path, &Limits::default()).unwrap_or_else(|e| panic!("{e}"));
+        let (mut animated, _) = zfail_files::load_animated(&path, &Limits::default()).unwrap_or_else(|e| panic!("{e}"));
         animated.cut_masked(1.0, cut::Limits::default());
         let mut scene = animated.scene.clone();
         zfail_scene::complete(&mut scene);
@@ -157,8 +158,8 @@ fn no_pixel_of_a_built_in_scene_is_wrong() {
     let gpu = Gpu::new(&GpuOptions::default()).expect("a graphics adapter");
     let only = env::var("ZFAIL_MODEL").unwrap_or_default();
     let (mut masks, mut failures) = (Tally::default(), Vec::new());
-    for entry in zfail_scene::builtin::SCENES.iter().filter(|e| e.name.contains(&only)) {
-        let mut animated = zfail_scene::builtin::animated(entry.name).expect("a name from the list");
+    for entry in zfail_builtin::SCENES.iter().filter(|e| e.name.contains(&only)) {
+        let mut animated = zfail_builtin::animated(entry.name).expect("a name from the list");
         animated.cut_masked(1.0, cut::Limits::default());
         let mut scene = animated.scene.clone();
         for camera in 0..scene.cameras.len() {

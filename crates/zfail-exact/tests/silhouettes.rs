@@ -5,9 +5,10 @@
 
 use std::{env, path::PathBuf};
 use zfail_plan::glam::DVec3;
-use zfail_plan::scene::{Light, LightKind, LightShape, Scene};
+use zfail_plan::light::LightKind;
 use zfail_plan::view::View;
 use zfail_render::{AovKind, Gpu, GpuOptions, Renderer, Settings, Silhouettes, Tiles};
+use zfail_scene::{Light, LightShape, Scene};
 
 /// Solids, soups, sheets and parts of all sizes.
 const MODELS: [&str; 4] = [
@@ -54,11 +55,11 @@ fn lamps(scene: &Scene) -> impl Iterator<Item = Light> {
 #[test]
 fn the_device_and_the_cpu_agree() {
     let gpu = Gpu::new(&GpuOptions::default()).expect("a graphics adapter");
-    let built_in = zfail_scene::builtin::SCENES
+    let built_in = zfail_builtin::SCENES
         .iter()
-        .map(|entry| (entry.name.to_owned(), zfail_scene::builtin::scene(entry.name).expect("a name from the list")));
+        .map(|entry| (entry.name.to_owned(), zfail_builtin::scene(entry.name).expect("a name from the list")));
     let models = models().into_iter().map(|path| {
-        let mut scene = zfail_scene::load(&path).unwrap_or_else(|e| panic!("{e}"));
+        let mut scene = zfail_files::load(&path).unwrap_or_else(|e| panic!("{e}"));
         zfail_scene::complete(&mut scene);
         let lamps: Vec<Light> = lamps(&scene).collect();
         scene.lights.extend(lamps);

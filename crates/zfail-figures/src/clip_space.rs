@@ -17,8 +17,8 @@ use crate::palette;
 use crate::paper::{self, Paper};
 use crate::plans::Plans;
 use crate::third_person::Camera;
+use zfail_plan::bounds::Bounds;
 use zfail_plan::glam::{DMat4, DVec3, DVec4};
-use zfail_plan::scene::Bounds;
 use zfail_plan::view::{Projection, View};
 
 /// The box is so deep, half its height being 1.

@@ -7,9 +7,9 @@ use crate::over_picture::{self, Picture};
 use crate::paper::Paper;
 use crate::plans::Plans;
 use crate::{Error, Options, Overlay, alternate, clip_space, pyramid};
-use zfail_plan::scene::{Light, Pose, Scene};
 use zfail_plan::view::View;
 use zfail_render::{Gpu, wgpu};
+use zfail_scene::{Light, Pose, Scene};
 
 /// Draws figures of a scene, as often and of as many kinds as wanted.
 #[derive(Debug)]

@@ -3,8 +3,9 @@
 use crate::drawing::{Drawing, Line};
 use crate::model::Model;
 use std::f64::consts::TAU;
+use zfail_plan::bounds::Bounds;
 use zfail_plan::glam::{DVec3, DVec4};
-use zfail_plan::scene::{Bounds, LightKind};
+use zfail_plan::light::LightKind;
 use zfail_plan::view::{Projection, View};
 
 /// Segments of a circle.

@@ -7,11 +7,12 @@
 use crate::{Error, palette};
 use std::collections::HashMap;
 use std::sync::OnceLock;
+use zfail_plan::bounds::Bounds;
 use zfail_plan::glam::{DAffine3, DMat4, DVec3, DVec4};
 use zfail_plan::plan::Caster;
-use zfail_plan::scene::{Bounds, Ground, Instance, Light, Mesh, Pose, Scene};
 use zfail_plan::topology::{Surface, Topology};
 use zfail_plan::view::View;
+use zfail_scene::{Ground, Instance, Light, Mesh, Pose, Scene};
 
 /// A scene without what only pictures need.
 #[derive(Debug)]
@@ -260,7 +261,7 @@ fn check(scene: &Scene) -> Result<(), Error> {
         if mesh.triangles.iter().flatten().any(|&v| v as usize >= mesh.positions.len()) {
             return fail(format!("mesh {m} refers to a vertex that does not exist"));
         }
-        let astray = |p: &zfail_plan::scene::Primitive| {
+        let astray = |p: &zfail_scene::Primitive| {
             p.triangles.start > p.triangles.end
                 || p.triangles.end as usize > mesh.triangles.len()
                 || p.material.is_some_and(|material| material >= scene.materials.len())

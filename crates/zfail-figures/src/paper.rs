@@ -108,7 +108,7 @@ pub fn eye_and_lights(drawing: &mut Drawing, model: &Model, paper: &Paper<'_>, c
 
 /// A ball around points, not the least.
 pub fn ball(points: &[DVec3]) -> (DVec3, f64) {
-    let bounds = zfail_plan::scene::Bounds::of(points.iter().copied());
+    let bounds = zfail_plan::bounds::Bounds::of(points.iter().copied());
     if bounds.is_empty() { (DVec3::ZERO, 1.0) } else { (bounds.center(), bounds.half().length()) }
 }
 

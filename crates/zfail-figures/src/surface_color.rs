@@ -1,6 +1,6 @@
 //! The one colour that stands for a material where the scene itself is drawn as a figure.
 
-use zfail_plan::scene::{Material, Scene};
+use zfail_scene::{Material, Scene};
 
 /// Texels to either side that a mean is taken of.
 const GRID: u32 = 16;

@@ -3,9 +3,10 @@
 use crate::paper::Paper;
 use crate::{Overlay, ThirdPerson};
 use zfail_plan::glam::{DAffine3, DMat3, DVec3};
+use zfail_plan::light::LightKind;
 use zfail_plan::plan::Technique;
-use zfail_plan::scene::{Instance, Light, LightKind, LightShape, Mesh, Scene};
 use zfail_plan::view::{Projection, View};
+use zfail_scene::{Instance, Light, LightShape, Mesh, Scene};
 
 fn block(half: [f32; 3]) -> Mesh {
     let corner = |i: usize| [0, 1, 2].map(|k| if i >> k & 1 == 0 { -half[k] } else { half[k] });

@@ -66,7 +66,7 @@ impl Camera {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use zfail_plan::scene::Bounds;
+    use zfail_plan::bounds::Bounds;
 
     #[test]
     fn everything_fits_the_image_and_fills_it() {

@@ -4,9 +4,9 @@ mod support;
 
 use support::{GREY, SIZE, boxes, distance, figure, gpu, look, pixel, pixels, ray, scene, seen, through_box};
 use zfail_figures::{Options, Overlay, palette};
-use zfail_render::zfail_plan::glam::DVec3;
-use zfail_render::zfail_plan::scene::LightKind;
-use zfail_render::zfail_plan::view::View;
+use zfail_plan::glam::DVec3;
+use zfail_plan::light::LightKind;
+use zfail_plan::view::View;
 use zfail_render::{Gpu, Technique};
 
 const CUBES: [DVec3; 2] = [DVec3::new(0.0, 1.0, 0.0), DVec3::new(-0.2, 2.6, 0.3)];

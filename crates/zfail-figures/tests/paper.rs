@@ -4,9 +4,9 @@ mod support;
 
 use support::{GREY, SIZE, distance, figure, gpu, look, scene};
 use zfail_figures::{Error, Figures, Options, Overlay, ThirdPerson, palette};
+use zfail_plan::glam::DVec3;
 use zfail_render::wgpu;
-use zfail_render::zfail_plan::glam::DVec3;
-use zfail_render::zfail_plan::scene::Pose;
+use zfail_scene::Pose;
 
 const CUBES: [DVec3; 1] = [DVec3::new(0.0, 1.0, 0.0)];
 const LIGHT: DVec3 = DVec3::new(0.7, 4.0, 0.9);

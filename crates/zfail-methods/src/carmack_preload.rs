@@ -14,8 +14,8 @@ use crate::geometry::Geometry;
 use crate::procedure::{Pass, Procedure, in_front};
 use crate::{Error, FiniteOptions, zfail_finite};
 use wgpu::{CompareFunction, StencilOperation};
-use zfail_plan::scene::Light;
 use zfail_plan::view::View;
+use zfail_scene::Light;
 
 /// Closed volumes twice: against the polarity wherever they are, with it in front of the visible surface.
 pub fn procedure(geometry: &Geometry, view: &View, light: &Light, options: &FiniteOptions) -> Result<Procedure, Error> {

@@ -13,8 +13,8 @@ use crate::geometry::Geometry;
 use crate::procedure::{Pass, Procedure};
 use crate::volumes::{Extrusion, Faces, Volumes};
 use crate::{Error, Method, Unavailable};
-use zfail_plan::scene::Light;
 use zfail_plan::view::{Projection, View};
+use zfail_scene::Light;
 
 /// All faces of all volumes, from behind.
 pub fn procedure(geometry: &Geometry, view: &View, light: &Light) -> Result<Procedure, Error> {

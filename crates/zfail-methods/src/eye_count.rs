@@ -13,9 +13,9 @@ use crate::procedure::Procedure;
 use crate::volumes::weigh;
 use crate::{Error, Method, Unavailable, heidmann};
 use zfail_plan::glam::{DVec3, DVec4};
-use zfail_plan::scene::Light;
 use zfail_plan::topology::Topology;
 use zfail_plan::view::{Projection, View};
+use zfail_scene::Light;
 
 /// Heidmann's sides, counted from the eye's own shadow on.
 pub fn procedure(geometry: &Geometry, view: &View, light: &Light) -> Result<Procedure, Error> {

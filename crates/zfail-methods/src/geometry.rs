@@ -6,11 +6,12 @@
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
+use zfail_plan::bounds::Bounds;
 use zfail_plan::casting::ObjectLight;
 use zfail_plan::glam::{DVec4, Mat4};
-use zfail_plan::scene::{Bounds, Instance, Light, Material, Scene};
 use zfail_plan::topology::{NONE, Topology, TopologyError};
 use zfail_plan::view::{Projection, View};
+use zfail_scene::{Instance, Light, Material, Scene};
 
 /// What stays from view to view.
 #[derive(Debug)]
@@ -106,7 +107,7 @@ impl Geometry {
 
 impl Mesh {
     fn new(device: &wgpu::Device, scene: &Scene, m: usize) -> Result<Self, TopologyError> {
-        let topology = Topology::of(scene, m)?;
+        let topology = scene.topology(m)?;
         let material = |index: Option<usize>| index.and_then(|i| scene.materials.get(i));
         let solid =
             scene.meshes[m].primitives.iter().filter(|p| !material(p.material).is_some_and(Material::is_blended));

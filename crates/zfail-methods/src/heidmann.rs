@@ -14,8 +14,8 @@ use crate::geometry::Geometry;
 use crate::procedure::{Pass, Procedure, in_front};
 use crate::volumes::{Extrusion, Faces, Volumes};
 use wgpu::{Face, StencilOperation};
-use zfail_plan::scene::Light;
 use zfail_plan::view::View;
+use zfail_scene::Light;
 
 /// As the hardware of the day had it: front faces in one pass, back faces in the next, and counts that stop at 0 and at
 /// 255 (`GL_INCR`, `GL_DECR`). All front faces have to come first, or counts would be cut at 0 on the way.

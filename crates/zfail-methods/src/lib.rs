@@ -1,6 +1,6 @@
 //! Shadow methods that the papers tell of, runnable side by side: those of [`Method::ALL`].
 //!
-//! In: a [`Scene`](zfail_plan::scene::Scene), a [`View`](zfail_plan::view::View) and one of its lights. Out: a
+//! In: a [`Scene`](zfail_scene::Scene), a [`View`](zfail_plan::view::View) and one of its lights. Out: a
 //! [`Shadow`]: a mask of what the light reaches, as [`zfail_render::Aovs::shadow`] has it, and what it cost.
 //!
 //! The modules stand in the order of history, and each says in its head which section of which paper it follows. All

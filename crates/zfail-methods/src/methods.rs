@@ -11,9 +11,9 @@ use crate::{
 };
 use std::cell::OnceCell;
 use std::time::Instant;
-use zfail_plan::scene::{Light, Scene};
 use zfail_plan::view::View;
 use zfail_render::{AovKind, Gpu, RenderError, Renderer, Settings};
+use zfail_scene::{Light, Scene};
 
 /// A scene on the device, ready to be shadowed by any method.
 #[derive(Debug)]

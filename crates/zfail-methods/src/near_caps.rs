@@ -19,8 +19,8 @@ use crate::geometry::Geometry;
 use crate::procedure::{Pass, Procedure};
 use crate::volumes::{Draw, Extrusion, Faces, Volumes};
 use zfail_plan::glam::{DMat4, DVec2, DVec4};
-use zfail_plan::scene::Light;
 use zfail_plan::view::View;
+use zfail_scene::Light;
 
 /// Closed volumes, and in front of them the caps of what the near plane cuts off.
 pub fn procedure(geometry: &Geometry, view: &View, light: &Light) -> Result<Procedure, Error> {

@@ -10,10 +10,10 @@ use crate::{Error, Figures};
 use std::time::Instant;
 use zfail_plan::glam::{DAffine3, Vec3};
 use zfail_plan::plan::{self, Counting, FramePlan, Measures, ShadowLight};
-use zfail_plan::scene::{Instance, Light};
 use zfail_plan::view::View;
 use zfail_render::Gpu;
 use zfail_render::zfail::{Caster, Frame, Shadows, Target};
+use zfail_scene::{Instance, Light};
 
 /// What `light` reaches, by these steps.
 pub fn shadow(

@@ -18,10 +18,12 @@ use std::f64::consts::FRAC_PI_2;
 use std::time::Instant;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{Device, Operations, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor};
+use zfail_plan::bounds::Bounds;
 use zfail_plan::glam::{DAffine3, DMat3, DMat4, DVec3};
-use zfail_plan::scene::{Bounds, Light, LightKind};
+use zfail_plan::light::LightKind;
 use zfail_plan::view::{Projection, View};
 use zfail_render::Gpu;
+use zfail_scene::Light;
 
 const DEPTH: TextureFormat = TextureFormat::Depth32Float;
 /// Where maps of lights that are somewhere begin, as a share of where they end.

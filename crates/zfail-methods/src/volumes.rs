@@ -9,10 +9,10 @@ use std::ops::Range;
 use zfail_plan::casting;
 use zfail_plan::glam::{DVec3, Vec3, Vec4};
 use zfail_plan::plan::PlanError;
-use zfail_plan::scene::{Instance, Light};
 use zfail_plan::topology::{Cover, NONE};
 use zfail_plan::view::View;
 use zfail_plan::volume;
+use zfail_scene::{Instance, Light};
 
 /// Triangles to be counted.
 #[derive(Clone, Debug, Default)]

@@ -14,8 +14,9 @@ use crate::geometry::Geometry;
 use crate::procedure::{Pass, Procedure};
 use crate::volumes::{Extrusion, Faces, Volumes};
 use crate::{Error, FiniteOptions};
-use zfail_plan::scene::{Bounds, Light};
+use zfail_plan::bounds::Bounds;
 use zfail_plan::view::{Projection, View};
+use zfail_scene::Light;
 
 /// Volumes that end, before a far plane.
 pub fn procedure(geometry: &Geometry, view: &View, light: &Light, options: &FiniteOptions) -> Result<Procedure, Error> {

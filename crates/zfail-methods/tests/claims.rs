@@ -8,7 +8,8 @@ mod support;
 use support::{Case, gpu, light, look, plate, point};
 use zfail_methods::{FiniteOptions, Method, Options};
 use zfail_plan::glam::DVec3;
-use zfail_plan::scene::{LightKind, Scene};
+use zfail_plan::light::LightKind;
+use zfail_scene::Scene;
 
 /// Every method that promises to be exact, on a scene on which `failing` is not.
 fn exact_where_others_fail(case: &mut Case<'_>, failing: &[Method]) {

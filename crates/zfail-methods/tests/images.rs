@@ -5,7 +5,6 @@ mod support;
 use support::{Case, gpu};
 use zfail_methods::{Error, Figures, FiniteOptions, Method, Methods, Options, ShadowMapOptions};
 use zfail_render::{Renderer, Settings, Technique};
-use zfail_scene::builtin;
 
 /// Pixels that are wrongly dark and wrongly lit with a map of `resolution` and biases.
 fn map(case: &mut Case<'_>, resolution: u32, bias: f32, slope_bias: f32) -> [usize; 2] {
@@ -94,7 +93,7 @@ fn figures_follow_from_the_methods() {
 #[test]
 fn the_renderer_counts_the_same_fragments() {
     let Some(gpu) = gpu() else { return };
-    let scene = builtin::scene("container").expect("a built-in scene");
+    let scene = zfail_builtin::scene("container").expect("a built-in scene");
     let view = scene.cameras[0].view([160, 100], &scene.bounds());
     let mut methods = Methods::new(&gpu, &scene).expect("methods");
     let mut renderer = Renderer::new(&gpu, &scene).expect("a renderer");

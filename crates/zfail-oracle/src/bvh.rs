@@ -9,7 +9,7 @@ use glam::{DMat3, DVec3, Vec3A};
 use obvhs::{Boundable, BvhBuildParams, aabb::Aabb, bvh2::Bvh2, bvh2::builder::build_bvh2};
 use rayon::prelude::*;
 use std::time::Duration;
-use zfail_plan::scene::Bounds;
+use zfail_plan::bounds::Bounds;
 
 /// Trees over a soup.
 pub(crate) struct Bvh {
@@ -178,7 +178,7 @@ fn outward(bounds: &Bounds) -> Aabb {
 mod tests {
     use super::*;
     use glam::DAffine3;
-    use zfail_plan::scene::{Instance, Mesh, Scene};
+    use zfail_scene::{Instance, Mesh, Scene};
 
     /// A triangle in the plane z = 0, at these places.
     fn soup(places: &[DAffine3]) -> Soup {

@@ -4,7 +4,7 @@
 //! influences counts only; the lit verdict always comes from plain two-sided casting.
 
 use zfail_plan::casting::Casting;
-use zfail_plan::scene::Scene;
+use zfail_scene::Scene;
 
 /// A triangle's casting policy (`c_t` as a function of the facing sign).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

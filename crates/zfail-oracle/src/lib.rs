@@ -34,10 +34,9 @@ use rayon::prelude::*;
 use shade::{Shader, Source};
 use sight::{Looker, Sight};
 use soup::Soup;
-use zfail_plan::{
-    scene::{Light, LightKind, Scene},
-    view::View,
-};
+use zfail_plan::light::LightKind;
+use zfail_plan::view::View;
+use zfail_scene::{Light, Scene};
 
 /// A scene prepared for ray casting.
 pub struct Oracle {

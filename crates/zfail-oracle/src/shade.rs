@@ -13,7 +13,8 @@ use crate::{
     soup::{Id, Soup, Triangle},
 };
 use glam::DVec3;
-use zfail_plan::scene::{Light, LightKind};
+use zfail_plan::light::LightKind;
+use zfail_scene::Light;
 
 /// The light as the soup's frame sees it.
 #[derive(Clone, Debug)]

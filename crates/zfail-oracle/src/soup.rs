@@ -6,7 +6,7 @@
 
 use glam::{DMat3, DVec3};
 use std::collections::HashMap;
-use zfail_plan::scene::{AlphaMode, Instance, Material, Scene};
+use zfail_scene::{AlphaMode, Instance, Material, Scene};
 
 /// Which triangle of which instance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,11 +4,10 @@ mod common;
 
 use common::{Random, at, cube, floor, look, point_light, scene, soup, sphere};
 use zfail_oracle::{Cast, CastTable, Oracle};
-use zfail_plan::{
-    glam::{DAffine3, DMat3, DVec3},
-    scene::{Light, LightKind, Scene, world_triangle},
-    view::{Projection, View},
-};
+use zfail_plan::glam::{DAffine3, DMat3, DVec3};
+use zfail_plan::light::LightKind;
+use zfail_plan::view::{Projection, View};
+use zfail_scene::{Light, Scene, world_triangle};
 
 struct Triangle {
     v: [DVec3; 3],

@@ -4,11 +4,10 @@ mod common;
 
 use common::{at, cube, floor, point_light, scene, sphere};
 use zfail_oracle::{Cast, CastTable, Doubt, Oracle, Truth};
-use zfail_plan::{
-    glam::{DAffine3, DMat3, DVec3},
-    scene::{AlphaMode, LightKind, Material, Mesh, Scene},
-    view::{Projection, View},
-};
+use zfail_plan::glam::{DAffine3, DMat3, DVec3};
+use zfail_plan::light::LightKind;
+use zfail_plan::view::{Projection, View};
+use zfail_scene::{AlphaMode, Material, Mesh, Scene};
 
 /// Looks straight down; world x and z of every pixel of the plane y = 0 follow.
 const SIZE: [u32; 2] = [200, 200];

@@ -5,11 +5,10 @@ mod common;
 use common::{at, cube, floor, look, point_light, scene, sphere};
 use std::time::Instant;
 use zfail_oracle::{CastTable, Doubt, Oracle, OverBudget, SizeMismatch, Truth};
-use zfail_plan::{
-    glam::{DAffine3, DVec3},
-    scene::{LightKind, Scene},
-    view::View,
-};
+use zfail_plan::glam::{DAffine3, DVec3};
+use zfail_plan::light::LightKind;
+use zfail_plan::view::View;
+use zfail_scene::Scene;
 
 const SIZE: [u32; 2] = [160, 90];
 

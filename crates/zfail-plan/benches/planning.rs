@@ -9,8 +9,8 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use glam::{DAffine3, DVec3, Vec4};
 use std::hint::black_box;
 use zfail_plan::casting::{self, Casting};
+use zfail_plan::light::LightKind;
 use zfail_plan::plan::{Caster, Counting, Frame, Planner, ShadowLight, Technique};
-use zfail_plan::scene::LightKind;
 use zfail_plan::topology::Topology;
 use zfail_plan::view::{Projection, View};
 use zfail_plan::volume;

@@ -14,7 +14,7 @@
 //! numbers, so front faces suffice where the light's winding number is the least there is, back faces where it is the
 //! greatest.
 
-use crate::scene::{Instance, LightKind, Scene};
+use crate::light::LightKind;
 use crate::topology::{NONE, Shape, Topology};
 use glam::{DMat3, DVec3, DVec4, Vec4};
 use rayon::prelude::*;
@@ -33,27 +33,6 @@ pub fn object_light(kind: &LightKind, object_from_world: &DMat3, origin: DVec3) 
     let to_object = if light.w == 0.0 { to_object.try_normalize()? } else { to_object };
     let rounded = to_object.extend(light.w).as_vec4();
     rounded.is_finite().then_some(rounded)
-}
-
-/// By instance of `scene` and triangle, from which side it casts under light number `light`; `None` for what does not cast.
-/// `topologies` are those of the scene's meshes ([`crate::closure::topologies`]).
-///
-/// # Panics
-/// If there is no such light, or the topologies are those of another scene.
-#[must_use]
-pub fn of_scene(scene: &Scene, topologies: &[Option<Topology>], light: usize) -> Vec<Vec<Option<Casting>>> {
-    let mut of_parts = Vec::new();
-    let mut of_instance = |instance: &Instance| {
-        let placement = &instance.world_from_object;
-        let light = object_light(&scene.lights[light].kind, &placement.matrix3.inverse(), placement.translation);
-        let (Some(topology), Some(light)) = (&topologies[instance.mesh], light) else {
-            return vec![None; scene.meshes[instance.mesh].triangles.len()];
-        };
-        castings(topology, light, &mut of_parts);
-        let of_part = |&part: &u32| if part == NONE { None } else { of_parts.get(part as usize).copied() };
-        topology.part_of.iter().map(of_part).collect()
-    };
-    scene.instances.iter().map(&mut of_instance).collect()
 }
 
 /// Which faces of a part cast.

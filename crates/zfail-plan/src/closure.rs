@@ -5,8 +5,7 @@
 //! is proved holds on every device that places the same vertex in the same place. Closedness is what makes the count of
 //! z-fail the same along every ray (McGuire et al. 2003, section 2; E&K 2002, section 2.2.3).
 
-use crate::scene::Scene;
-use crate::topology::{NONE, Topology, TopologyError};
+use crate::topology::{NONE, Topology};
 use crate::volume::{self, Volume};
 use rustc_hash::FxHashMap;
 use std::ops::{AddAssign, Range};
@@ -52,18 +51,6 @@ impl AddAssign for Closure {
         self.triangles += other.triangles;
         self.open_edges += other.open_edges;
     }
-}
-
-/// The topology of every mesh of `scene` of which an instance casts; `None` for the others.
-///
-/// # Errors
-/// If a mesh is invalid.
-///
-/// # Panics
-/// If an instance refers to a mesh that does not exist.
-pub fn topologies(scene: &Scene) -> Result<Vec<Option<Topology>>, TopologyError> {
-    let casts = |mesh: usize| scene.instances.iter().any(|instance| instance.mesh == mesh && instance.casts_shadow);
-    (0..scene.meshes.len()).map(|mesh| casts(mesh).then(|| Topology::of(scene, mesh)).transpose()).collect()
 }
 
 /// Examines the volume of weights `c`, each from -1 to 1, with extruded triangles as its dark cap and, where there is such, with a fan.

@@ -44,7 +44,7 @@ struct Crossing {
 const FACES: [[u32; 4]; 6] = [[0, 2, 6, 4], [1, 5, 7, 3], [0, 4, 5, 1], [2, 3, 7, 6], [0, 1, 3, 2], [4, 6, 7, 5]];
 
 impl Polyhedron {
-    /// Becomes a parallelepiped with the corners of [`crate::scene::Bounds::corners`].
+    /// Becomes a parallelepiped with the corners of [`crate::bounds::Bounds::corners`].
     pub fn set_box(&mut self, corners: &[DVec3; 8]) {
         self.clear();
         self.points.extend(corners);
@@ -183,7 +183,7 @@ fn stays(height: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Bounds;
+    use crate::bounds::Bounds;
     use glam::DQuat;
 
     /// Extremes over the polyhedron are those over the half spaces, found by dense sampling.

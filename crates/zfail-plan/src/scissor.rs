@@ -178,7 +178,7 @@ fn pixels(lo: f64, hi: f64, size: u32) -> Option<(u32, u32)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Bounds;
+    use crate::bounds::Bounds;
     use glam::DAffine3;
 
     fn view() -> View {

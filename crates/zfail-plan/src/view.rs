@@ -121,26 +121,3 @@ impl View {
         (self.clip_from_view() * DMat4::from(view_from_object)).as_mat4()
     }
 }
-
-impl crate::scene::Camera {
-    /// This camera with an image of `size`: the image's aspect ratio wins, the vertical extent is kept, and a finite
-    /// far plane is moved so that nothing within `bounds` (world space) is clipped by it.
-    #[must_use]
-    pub fn view(&self, size: [u32; 2], bounds: &crate::scene::Bounds) -> View {
-        let projection = match self.projection {
-            Projection::Perspective { yfov, near, .. } => Projection::Perspective { yfov, near, far: None },
-            Projection::Orthographic { ymag, near, far } => {
-                let mut far = far.min(near + 1.0);
-                if !bounds.is_empty() {
-                    let forward = -self.world_from_view.matrix3.z_axis;
-                    for corner in bounds.corners() {
-                        let depth = forward.dot(corner - self.world_from_view.translation);
-                        far = far.max(depth + 1e-3 * (depth - near).abs());
-                    }
-                }
-                Projection::Orthographic { ymag, near, far }
-            }
-        };
-        View { world_from_view: self.world_from_view, projection, size }
-    }
-}

@@ -3,8 +3,9 @@
 mod shapes;
 
 use glam::{DAffine3, DVec3};
+use zfail_plan::bounds::Bounds;
+use zfail_plan::light::LightKind;
 use zfail_plan::plan::{Caster, Counting, Frame, Planner, ShadowLight, Technique};
-use zfail_plan::scene::{Bounds, LightKind};
 use zfail_plan::topology::Topology;
 use zfail_plan::view::{Projection, View};
 

@@ -4,8 +4,8 @@ mod shapes;
 
 use glam::{DAffine3, DVec3};
 use shapes::Soup;
+use zfail_plan::light::LightKind;
 use zfail_plan::plan::{Caster, Counting, Frame, FramePlan, Measures, Planner, ShadowLight, Silhouettes, Technique};
-use zfail_plan::scene::LightKind;
 use zfail_plan::topology::Topology;
 use zfail_plan::view::{Projection, View};
 

@@ -5,7 +5,7 @@ mod shapes;
 use glam::{DAffine3, DMat3, DVec3};
 use shapes::Soup;
 use zfail_plan::casting::{self, Casting};
-use zfail_plan::scene::LightKind;
+use zfail_plan::light::LightKind;
 use zfail_plan::stack::{Caster, Frame, Outline, Work};
 use zfail_plan::topology::Topology;
 

@@ -4,9 +4,10 @@ mod shapes;
 
 use glam::{DAffine3, DMat3, DVec3};
 use shapes::Soup;
+use zfail_plan::bounds::Bounds;
 use zfail_plan::casting::{self, Casting};
+use zfail_plan::light::LightKind;
 use zfail_plan::plan::{Caster, Counting, Frame, FramePlan, Planner, ShadowLight, Technique};
-use zfail_plan::scene::{Bounds, LightKind};
 use zfail_plan::stack::{self, Body, Outline, Work};
 use zfail_plan::topology::Topology;
 use zfail_plan::view::{Projection, View};

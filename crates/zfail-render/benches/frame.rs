@@ -16,7 +16,7 @@ fn frame(c: &mut Criterion) {
     let mut group = c.benchmark_group("frame");
     group.sample_size(10);
     for name in ["container", "room", "cathedral"] {
-        let scene = zfail_scene::builtin::scene(name).expect("a built-in scene");
+        let scene = zfail_builtin::scene(name).expect("a built-in scene");
         let view = scene.cameras[0].view(SIZE, &scene.bounds());
         let mut renderer = Renderer::new(&gpu, &scene).expect("renderer");
         for shadows in [false, true] {

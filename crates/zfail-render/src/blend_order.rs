@@ -6,8 +6,8 @@
 use crate::draw_list::{Draw, Part};
 use std::collections::HashMap;
 use zfail_plan::glam::{DVec3, Vec3};
-use zfail_plan::scene::{Instance, Mesh};
 use zfail_plan::view::View;
+use zfail_scene::{Instance, Mesh};
 
 /// Triangles that a frame sorts at most, those of the nearest surfaces first: more would cost more than drawing them.
 /// Surfaces beyond are drawn as their mesh has them, inner sides first.

@@ -2,7 +2,7 @@
 
 use crate::RenderError;
 use crate::draw_list::material_slots;
-use zfail_plan::scene::{Pose, Scene};
+use zfail_scene::{Pose, Scene};
 
 /// Checks every index and size in `scene`.
 pub fn scene(scene: &Scene) -> Result<(), RenderError> {

@@ -4,10 +4,11 @@ use crate::blend_order::BlendOrder;
 use crate::geometry::Vertices;
 use std::cmp::Ordering;
 use std::ops::Range;
+use zfail_plan::bounds::Bounds;
 use zfail_plan::glam::DVec3;
-use zfail_plan::scene::{AlphaMode, Bounds, Instance, Material, Mesh, Scene, Specular, TextureRef};
 use zfail_plan::scissor;
 use zfail_plan::view::View;
+use zfail_scene::{AlphaMode, Instance, Material, Mesh, Scene, Specular, TextureRef};
 
 /// One primitive of a mesh.
 #[derive(Clone, Debug)]

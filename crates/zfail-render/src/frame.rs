@@ -5,8 +5,8 @@ use crate::layouts::{Layouts, bind};
 use crate::{Gpu, RenderError};
 use bytemuck::Pod;
 use zfail_plan::glam::{DAffine3, DMat3, DVec3};
-use zfail_plan::scene::{Ground, Sky};
 use zfail_plan::view::{Projection, View};
+use zfail_scene::{Ground, Sky};
 
 /// Data of a frame, on the device. The buffers grow to the largest frame seen.
 #[derive(Debug)]

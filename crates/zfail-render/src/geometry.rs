@@ -2,7 +2,7 @@
 
 use crate::gpu_data::InstanceRecord;
 use crate::{Gpu, RenderError, terminator};
-use zfail_plan::scene::{BentMesh, Mesh};
+use zfail_scene::{BentMesh, Mesh};
 
 /// A mesh on the device.
 #[derive(Debug)]

@@ -1,10 +1,12 @@
 //! Lights as shaders want them: in view space, scaled to the range of half floats.
 
 use crate::gpu_data::LightRecord;
+use zfail_plan::bounds::Bounds;
 use zfail_plan::glam::DVec3;
-use zfail_plan::scene::{Bounds, Light, LightKind};
+use zfail_plan::light::LightKind;
 use zfail_plan::scissor;
 use zfail_plan::view::View;
+use zfail_scene::Light;
 
 /// `light` in the space of `view`, its intensity multiplied by `pre_exposure`; `shape` is where its shape is.
 pub fn record(light: &Light, view: &View, pre_exposure: f32, shape: u32) -> LightRecord {
@@ -160,7 +162,7 @@ pub fn pre_exposure<'l>(lights: impl Iterator<Item = &'l Light>, bounds: &Bounds
 #[cfg(test)]
 mod tests {
     use super::*;
-    use zfail_plan::scene::LightShape;
+    use zfail_scene::LightShape;
 
     fn sun(lux: f32) -> Light {
         let kind = LightKind::Directional { direction: DVec3::NEG_Y };

@@ -5,7 +5,7 @@ use crate::draw_list::material_slots;
 use crate::gpu_data::{MaterialUniform, SlotUniform};
 use crate::layouts::{Layouts, bind};
 use crate::textures::Textures;
-use zfail_plan::scene::{AlphaMode, Material, Scene, TextureRef};
+use zfail_scene::{AlphaMode, Material, Scene, TextureRef};
 
 /// How much a blended surface must cover to be the nearest layer, on which shadows fall: what is hardly there must not keep
 /// them from the layer behind.

@@ -27,8 +27,9 @@ use parts::{Finish, Spans, parts};
 use std::collections::HashMap;
 use std::time::Instant;
 use zfail::{Counting, LightStats};
-use zfail_plan::scene::{Light, LightKind, Pose, Scene};
+use zfail_plan::light::LightKind;
 use zfail_plan::view::View;
+use zfail_scene::{Light, Pose, Scene};
 
 /// A scene on the device, ready to be rendered from any view.
 #[derive(Debug)]
@@ -322,8 +323,8 @@ mod tests {
     use super::*;
     use crate::GpuOptions;
     use zfail_plan::glam::{DAffine3, DVec3};
-    use zfail_plan::scene::{Ground, Instance, LightShape, Material, Mesh, Primitive, Sky};
     use zfail_plan::view::Projection;
+    use zfail_scene::{Ground, Instance, LightShape, Material, Mesh, Primitive, Sky};
 
     /// A triangle under more than one light, before a background.
     fn scene(unlit: bool) -> Scene {

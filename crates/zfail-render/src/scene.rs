@@ -8,9 +8,10 @@ use crate::surroundings::Surroundings;
 use crate::{Gpu, RenderError, Settings, check, materials};
 use glam::DVec3;
 use zfail::{Caster, Counting, Frame, LightStats, MeshId, ShadowLight, Shadows, Silhouettes, Tiles};
-use zfail_plan::scene::{Bounds, Instance, Light, LightKind, Material, Mesh, Pose, Scene};
-use zfail_plan::topology::Topology;
+use zfail_plan::bounds::Bounds;
+use zfail_plan::light::LightKind;
 use zfail_plan::view::View;
+use zfail_scene::{Instance, Light, Material, Mesh, Pose, Scene};
 
 /// Uploaded meshes and materials, registered casters, and the plain data that frames are made from.
 #[derive(Debug)]
@@ -264,7 +265,7 @@ fn register(gpu: &Gpu, shadows: &mut Shadows, scene: &Scene, m: usize) -> Result
     if !(0..scene.meshes[m].triangles.len()).any(|t| scene.triangle_casts(m, t)) {
         return Ok(None);
     }
-    let topology = Topology::of(scene, m).map_err(zfail::Error::from)?;
+    let topology = scene.topology(m).map_err(zfail::Error::from)?;
     Ok(Some(shadows.add_topology(&gpu.device, &gpu.queue, topology)?))
 }
 

@@ -72,7 +72,7 @@ pub enum Terminator {
 /// How scene radiance is scaled before tone mapping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Exposure {
-    /// What suits the scene's lights, [`zfail_plan::scene::Scene::exposure`], or if that is not known, the picture's own
+    /// What suits the scene's lights, [`zfail_scene::Scene::exposure`], or if that is not known, the picture's own
     /// luminance.
     Auto,
     /// By 2 to this power, in stops: 0 keeps radiance as it is, greater is brighter.

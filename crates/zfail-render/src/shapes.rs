@@ -4,7 +4,7 @@ use crate::mip_maps::Level;
 use crate::{Gpu, RenderError, srgb};
 use std::collections::HashMap;
 use zfail_plan::glam::DVec3;
-use zfail_plan::scene::{Filter, Light, LightShape, Scene};
+use zfail_scene::{Filter, Light, LightShape, Scene};
 
 /// Cookies are kept at no more texels a side: a projected picture is seen enlarged.
 const COOKIE_SIDE: u32 = 1024;

@@ -2,8 +2,8 @@
 
 use crate::geometry::{MeshBuffers, Vertices};
 use crate::{Gpu, RenderError, check};
-use zfail_plan::scene::{Ground, Scene, Sky};
 use zfail_plan::view::View;
+use zfail_scene::{Ground, Scene, Sky};
 
 /// Light from everywhere, and what is seen where no surface is.
 #[derive(Debug)]

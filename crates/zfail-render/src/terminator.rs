@@ -12,7 +12,7 @@
 
 use std::collections::HashMap;
 use zfail_plan::glam::Vec3;
-use zfail_plan::scene::Mesh;
+use zfail_scene::Mesh;
 
 /// Sines up to this leave teeth that are darker than a step of the picture: such meshes are fine as they are.
 const FINE: f32 = 0.02;

@@ -3,7 +3,7 @@
 use crate::Gpu;
 use crate::mip_maps::Level;
 use std::collections::HashMap;
-use zfail_plan::scene::{Filter, Scene, TextureRef, Wrap};
+use zfail_scene::{Filter, Scene, TextureRef, Wrap};
 
 /// How many texels a sample may spread over on a surface seen at a grazing angle, where there is hardware for it.
 const ANISOTROPY: u16 = 8;

@@ -3,10 +3,10 @@
 mod support;
 
 use support::{add, at, close, gpu, look, matt, picture, plain, reflectance, square, sun, wall};
-use zfail_render::zfail_plan::glam::{DAffine3, DVec3};
-use zfail_render::zfail_plan::scene::{AlphaMode, Material, Mesh, Scene, Specular, Transmission};
-use zfail_render::zfail_plan::view::View;
+use zfail_plan::glam::{DAffine3, DVec3};
+use zfail_plan::view::View;
 use zfail_render::{AovKind, Renderer, Settings};
+use zfail_scene::{AlphaMode, Material, Mesh, Scene, Specular, Transmission};
 
 const SIZE: [u32; 2] = [33, 33];
 

@@ -3,10 +3,11 @@
 mod support;
 
 use support::{add, gpu, light, look, matt, square, sun, wall};
-use zfail_render::zfail_plan::glam::{DAffine3, DVec3};
-use zfail_render::zfail_plan::scene::{Filter, Image, Light, LightKind, LightShape, Scene, Texture, Wrap};
-use zfail_render::zfail_plan::view::View;
+use zfail_plan::glam::{DAffine3, DVec3};
+use zfail_plan::light::LightKind;
+use zfail_plan::view::View;
 use zfail_render::{Gpu, Renderer, Settings};
+use zfail_scene::{Filter, Image, Light, LightShape, Scene, Texture, Wrap};
 
 /// Squares before a wall; the last one casts nothing at first, and no other instance has its mesh.
 fn scene() -> Scene {

@@ -3,10 +3,11 @@
 mod support;
 
 use support::{add, at, gpu, light, look, matt, picture, plain, square, sun, wall};
-use zfail_render::zfail_plan::glam::{DAffine3, DVec3};
-use zfail_render::zfail_plan::scene::{LightKind, Material, Pose, Scene};
-use zfail_render::zfail_plan::view::{Projection, View};
+use zfail_plan::glam::{DAffine3, DVec3};
+use zfail_plan::light::LightKind;
+use zfail_plan::view::{Projection, View};
 use zfail_render::{AovKind, Gpu, GpuOptions, RenderError, Renderer, Settings, Technique};
+use zfail_scene::{Material, Pose, Scene};
 
 const SIZE: [u32; 2] = [64, 48];
 

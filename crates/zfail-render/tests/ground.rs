@@ -3,10 +3,11 @@
 mod support;
 
 use support::{add, at, gpu, light, look, matt, picture, plain, square, sun};
-use zfail_render::zfail_plan::glam::{DAffine3, DVec3};
-use zfail_render::zfail_plan::scene::{AlphaMode, Ground, LightKind, Material, Scene, Sky, Specular};
-use zfail_render::zfail_plan::view::{Projection, View};
+use zfail_plan::glam::{DAffine3, DVec3};
+use zfail_plan::light::LightKind;
+use zfail_plan::view::{Projection, View};
 use zfail_render::{Picture, RenderError, Renderer, Settings, Technique};
+use zfail_scene::{AlphaMode, Ground, Material, Scene, Sky, Specular};
 
 const SIZE: [u32; 2] = [96, 64];
 const SKY: Sky = Sky { zenith: [0.3, 0.5, 0.9], horizon: [1.0, 0.9, 0.8], nadir: [0.3, 0.25, 0.2] };

@@ -3,8 +3,8 @@
 mod support;
 
 use support::{at, close, gpu, look, matt, picture, plain, sun, wall};
-use zfail_render::zfail_plan::glam::DVec3;
-use zfail_render::zfail_plan::scene::{Clearcoat, Material, Sheen, Specular, SpecularGlossiness};
+use zfail_plan::glam::DVec3;
+use zfail_scene::{Clearcoat, Material, Sheen, Specular, SpecularGlossiness};
 
 const PI: f64 = std::f64::consts::PI;
 

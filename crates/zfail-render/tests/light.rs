@@ -3,10 +3,11 @@
 mod support;
 
 use support::{add, at, close, gpu, light, look, matt, picture, plain, reflectance, square, sun, wall};
-use zfail_render::zfail_plan::glam::{DAffine3, DMat3, DVec3};
-use zfail_render::zfail_plan::scene::{AlphaMode, LightKind, Material, Scene};
-use zfail_render::zfail_plan::view::{Projection, View};
+use zfail_plan::glam::{DAffine3, DMat3, DVec3};
+use zfail_plan::light::LightKind;
+use zfail_plan::view::{Projection, View};
 use zfail_render::{Gpu, Renderer, Settings};
+use zfail_scene::{AlphaMode, Material, Scene};
 
 const SIZE: [u32; 2] = [33, 33];
 /// Half floats hold eleven bits; normals and sums take a few of their last ones.

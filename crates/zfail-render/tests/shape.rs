@@ -3,12 +3,11 @@
 mod support;
 
 use support::{add, at, close, gpu, light, look, matt, picture, plain, reflectance, square, wall};
-use zfail_render::zfail_plan::glam::{DAffine3, DMat3, DVec3};
-use zfail_render::zfail_plan::scene::{
-    AlphaMode, Filter, Image, Light, LightKind, LightShape, Material, Pose, Scene, Texture, Wrap,
-};
-use zfail_render::zfail_plan::view::{Projection, View};
+use zfail_plan::glam::{DAffine3, DMat3, DVec3};
+use zfail_plan::light::LightKind;
+use zfail_plan::view::{Projection, View};
 use zfail_render::{AovKind, Gpu, RenderError, Renderer, Settings};
+use zfail_scene::{AlphaMode, Filter, Image, Light, LightShape, Material, Pose, Scene, Texture, Wrap};
 
 const SIZE: [u32; 2] = [33, 33];
 const TOLERANCE: f64 = 4e-3;

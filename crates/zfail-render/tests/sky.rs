@@ -3,10 +3,10 @@
 mod support;
 
 use support::{add, at, gpu, look, matt, picture, plain, square};
-use zfail_render::zfail_plan::glam::{DAffine3, DMat3, DVec3, Vec3};
-use zfail_render::zfail_plan::scene::{Clearcoat, Material, Scene, Sheen, Sky, Specular, Transmission};
-use zfail_render::zfail_plan::view::Projection;
+use zfail_plan::glam::{DAffine3, DMat3, DVec3, Vec3};
+use zfail_plan::view::Projection;
 use zfail_render::{Gpu, Settings};
+use zfail_scene::{Clearcoat, Material, Scene, Sheen, Sky, Specular, Transmission};
 
 const SIZE: [u32; 2] = [33, 33];
 const PI: f64 = std::f64::consts::PI;

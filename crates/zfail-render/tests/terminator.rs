@@ -3,9 +3,10 @@
 mod support;
 
 use support::{add, gpu, light, look, matt, plain, sun};
-use zfail_render::zfail_plan::glam::{DAffine3, DVec3};
-use zfail_render::zfail_plan::scene::{Light, LightKind, Mesh, Primitive, Scene};
+use zfail_plan::glam::{DAffine3, DVec3};
+use zfail_plan::light::LightKind;
 use zfail_render::{AovKind, Aovs, Gpu, Picture, Renderer, Settings, Terminator};
+use zfail_scene::{Light, Mesh, Primitive, Scene};
 
 const SIZE: [u32; 2] = [320, 240];
 

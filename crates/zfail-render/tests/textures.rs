@@ -3,9 +3,9 @@
 mod support;
 
 use support::{add, gpu, look, matt, picture, plain, square};
-use zfail_render::zfail_plan::glam::{DAffine3, DVec3};
-use zfail_render::zfail_plan::scene::{Filter, Image, Material, Mesh, Scene, Texture, TextureRef, Wrap};
+use zfail_plan::glam::{DAffine3, DVec3};
 use zfail_render::{AovKind, Renderer};
+use zfail_scene::{Filter, Image, Material, Mesh, Scene, Texture, TextureRef, Wrap};
 
 /// A scene with one texture of `rgba` texels in one row, read without interpolation.
 fn with_texture(rgba: &[[u8; 4]]) -> Scene {

@@ -3,12 +3,14 @@
 //! In: meshes and f64 transforms. Out: meshes whose coordinates lie near their own origin, and the f64 translation
 //! that puts them back, so that a light brought into object space keeps all its digits wherever the mesh stands.
 
+use crate::{Light, Mesh};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
-use zfail_plan::scene::{Bounds, Light, LightKind, Mesh};
+use zfail_plan::bounds::Bounds;
+use zfail_plan::light::LightKind;
 
 /// What a linear map does to volumes, judged relative to its own scale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Rank {
+pub enum Rank {
     /// Invertible with room to spare.
     Full,
     /// Flattens everything into a plane, or so nearly that its inverse means nothing.
@@ -27,7 +29,7 @@ const LEAST_SCALE: f64 = 1e-60;
 ///
 /// With singular values a >= b >= c, the norms of `m`, its cofactors and its determinant are a, ab and abc within
 /// a factor of two, so their quotients tell the ratios without a decomposition.
-pub(crate) fn rank(m: &DMat3) -> Rank {
+pub fn rank(m: &DMat3) -> Rank {
     let scale = m.to_cols_array().iter().fold(0.0_f64, |s, x| s.max(x.abs()));
     if scale < LEAST_SCALE {
         return Rank::Line;
@@ -46,7 +48,7 @@ pub(crate) fn rank(m: &DMat3) -> Rank {
 
 /// `m` itself if it is invertible with room to spare, otherwise a matrix near it that is: a flattened direction gets
 /// a millionth of the greatest extent, and what would be a line or a point is so small that nothing can be seen of it.
-pub(crate) fn invertible(m: &DMat3) -> DMat3 {
+pub fn invertible(m: &DMat3) -> DMat3 {
     /// Of a mesh that vanishes; and the greatest matrix that counts as nothing.
     const NOTHING: f64 = 1e-9;
     /// Thickness over extent; enough for [`Rank::Full`].
@@ -88,7 +90,7 @@ fn frobenius(m: &DMat3) -> f64 {
 
 /// The matrix that takes area vectors where `m` takes points: the inverse transpose times the determinant, which
 /// exists for singular matrices too.
-pub(crate) fn cofactor(m: &DMat3) -> DMat3 {
+pub fn cofactor(m: &DMat3) -> DMat3 {
     DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis))
 }
 
@@ -98,7 +100,7 @@ const FAR: f64 = 4.0;
 
 /// Moves a far-off mesh to its own origin without changing any difference between coordinates, and returns what was
 /// subtracted. Axes on which that would round any vertex stay as they are.
-pub(crate) fn recenter(mesh: &mut Mesh) -> DVec3 {
+pub fn recenter(mesh: &mut Mesh) -> DVec3 {
     let bounds = mesh.bounds();
     let mut origin = DVec3::ZERO;
     if bounds.is_empty() {
@@ -125,7 +127,7 @@ fn is_exact_difference(a: f32, b: f32) -> bool {
 }
 
 /// Rounds world-space `points` to single precision about an origin near them; returns the origin and the points.
-pub(crate) fn localize(points: &[DVec3]) -> (DVec3, Vec<[f32; 3]>) {
+pub fn localize(points: &[DVec3]) -> (DVec3, Vec<[f32; 3]>) {
     let bounds = Bounds::of(points.iter().copied());
     let origin = if bounds.is_empty() { DVec3::ZERO } else { bounds.center() };
     (origin, points.iter().map(|&p| (p - origin).as_vec3().to_array()).collect())
@@ -134,7 +136,7 @@ pub(crate) fn localize(points: &[DVec3]) -> (DVec3, Vec<[f32; 3]>) {
 /// `mesh` as a singular `world_from_object` leaves it: in world space, relative to the returned origin.
 ///
 /// All its triangles lie in one plane, so their normals are the plane's, on the side that each vertex normal had.
-pub(crate) fn flatten(mesh: &Mesh, world_from_object: &DAffine3) -> (Mesh, DVec3) {
+pub fn flatten(mesh: &Mesh, world_from_object: &DAffine3) -> (Mesh, DVec3) {
     let points: Vec<DVec3> =
         mesh.positions.iter().map(|p| world_from_object.transform_point3(DVec3::from(p.map(f64::from)))).collect();
     let (origin, positions) = localize(&points);
@@ -157,18 +159,18 @@ pub(crate) fn flatten(mesh: &Mesh, world_from_object: &DAffine3) -> (Mesh, DVec3
 }
 
 /// Whether all entries are finite and so small that their products and squares are finite too.
-pub(crate) fn is_moderate(m: &DAffine3) -> bool {
+pub fn is_moderate(m: &DAffine3) -> bool {
     m.to_cols_array().iter().all(|x| x.abs() <= 1e30)
 }
 
 /// `v` at unit length; `None` if it has no direction. One that is a unit vector but for single precision stays bit for bit.
-pub(crate) fn unit_vector(v: DVec3) -> Option<DVec3> {
+pub fn unit_vector(v: DVec3) -> Option<DVec3> {
     const ROUNDING: f64 = 1e-6;
     if (v.length_squared() - 1.0).abs() < ROUNDING { Some(v) } else { v.try_normalize() }
 }
 
 /// `q` at unit length. One that is a unit quaternion but for rounding stays bit for bit.
-pub(crate) fn unit_quaternion(q: DQuat) -> Option<DQuat> {
+pub fn unit_quaternion(q: DQuat) -> Option<DQuat> {
     let length = q.length();
     if (length - 1.0).abs() <= 4.0 * f64::EPSILON {
         return Some(q);
@@ -178,7 +180,7 @@ pub(crate) fn unit_quaternion(q: DQuat) -> Option<DQuat> {
 
 /// Rotation and translation of `m`, without scale and shear. It keeps the way the camera looks and, as near as can be,
 /// its up; a mirrored camera has left and right exchanged, since a view space is right-handed.
-pub(crate) fn rigid(m: &DAffine3) -> DAffine3 {
+pub fn rigid(m: &DAffine3) -> DAffine3 {
     let back = m.matrix3.z_axis.try_normalize().unwrap_or(DVec3::Z);
     let up = m.matrix3.y_axis.reject_from_normalized(back);
     let up = up.try_normalize().unwrap_or_else(|| back.any_orthonormal_vector());
@@ -186,7 +188,7 @@ pub(crate) fn rigid(m: &DAffine3) -> DAffine3 {
 }
 
 /// Where a light's node stands; it shines along its -z axis, and +y is up where that matters.
-pub(crate) fn light_placement(light: &Light) -> DAffine3 {
+pub fn light_placement(light: &Light) -> DAffine3 {
     let (translation, direction) = match light.kind {
         LightKind::Point { position, .. } => (position, DVec3::NEG_Z),
         LightKind::Spot { position, direction, .. } => (position, direction),
@@ -207,7 +209,7 @@ pub(crate) fn light_placement(light: &Light) -> DAffine3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use zfail_plan::scene::Primitive;
+    use crate::Primitive;
 
     fn mesh_at(offset: [f32; 3]) -> Mesh {
         let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.1], [0.0, 1.0, 0.3]];

@@ -5,9 +5,10 @@
 
 mod text;
 
+use crate::{Camera, Ground, Light, Scene, Sky};
 use std::path::Path;
 use std::{fs, io};
-use zfail_plan::scene::{Camera, Ground, Light, LightKind, Scene, Sky};
+use zfail_plan::light::LightKind;
 use zfail_plan::view::Projection;
 
 /// What `zfail render --view` takes from a file.

@@ -54,11 +54,10 @@ mod tests {
     use super::*;
     use crate::session::Look;
     use zfail_figures::Overlay;
-    use zfail_scene::builtin;
 
     #[test]
     fn every_choice_is_on_the_command_line() {
-        let room = builtin::animated("room").expect("it is built in");
+        let room = zfail_builtin::animated("room").expect("it is built in");
         let mut session = Session::new("my room.glb".to_owned(), room, Look::default());
         let line = |session: &Session| {
             render(session, [64, 48], Path::new("a.json"), Path::new("a.png"), &["--blended-shadows".to_owned()])

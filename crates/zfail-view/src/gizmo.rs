@@ -4,9 +4,11 @@
 //! the plane of the screen; a direction is turned as if its handle lay on a ball.
 
 use crate::camera::radius;
+use zfail_plan::bounds::Bounds;
 use zfail_plan::glam::{DVec2, DVec3};
-use zfail_plan::scene::{Bounds, Light, LightKind};
+use zfail_plan::light::LightKind;
 use zfail_plan::view::{Projection, View};
+use zfail_scene::Light;
 
 /// A place that can be dragged.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,7 +145,7 @@ fn size(view: &View) -> DVec2 {
 mod tests {
     use super::*;
     use zfail_plan::glam::{DAffine3, DMat3, DQuat};
-    use zfail_plan::scene::LightShape;
+    use zfail_scene::LightShape;
 
     const BOUNDS: Bounds = Bounds { min: DVec3::NEG_ONE, max: DVec3::ONE };
 

@@ -43,9 +43,9 @@ mod tests {
 
     #[test]
     fn time_passes_only_while_playing_and_starts_again_at_the_end() {
-        let scene = zfail_scene::builtin::SCENES
+        let scene = zfail_builtin::SCENES
             .iter()
-            .filter_map(|entry| zfail_scene::builtin::animated(entry.name))
+            .filter_map(|entry| zfail_builtin::animated(entry.name))
             .find(|scene| !scene.animations.is_empty())
             .expect("one of the built-in scenes moves");
         let duration = scene.animations[0].duration;

@@ -15,10 +15,10 @@ use lights::Origin;
 use std::mem;
 use surroundings::Spare;
 use zfail_figures::Overlay;
-use zfail_plan::scene::{Bounds, Pose, Scene};
+use zfail_plan::bounds::Bounds;
 use zfail_plan::view::View;
 use zfail_render::{Exposure, RenderError, Renderer, Settings, Technique};
-use zfail_scene::Animated;
+use zfail_scene::{Animated, Pose, Scene};
 
 /// How scenes are shown; it stays when another one is opened.
 #[derive(Clone, Debug, Default)]

@@ -14,8 +14,8 @@ use wgpu::{
     Device, Extent3d, LoadOp, Operations, PollType, Queue, RenderPassDepthStencilAttachment, RenderPassDescriptor,
     StoreOp, TextureAspect, TextureDescriptor, TextureDimension, TextureUsages, TextureView, TextureViewDescriptor,
 };
+use zfail_plan::bounds::Bounds;
 use zfail_plan::plan::{Technique, Tiles};
-use zfail_plan::scene::Bounds;
 use zfail_plan::view::{Projection, View};
 
 /// Times of one device.

@@ -34,11 +34,12 @@ pub use error::Error;
 pub use features::{depth_stencil_format, wanted_features};
 pub use pipelines::{Pipelines, Target, lit_stencil};
 pub use shadows::{Caster, Frame, MeshId, Shadows};
+pub use zfail_plan::bounds::Bounds;
+pub use zfail_plan::light::LightKind;
 pub use zfail_plan::plan::{
     Counting, Culled, FramePlan, LightStats, Measures, ShadowLight, Silhouettes, Technique, Tiles, Triangles,
     UnknownTechnique, ZPass,
 };
-pub use zfail_plan::scene::{Bounds, LightKind};
 pub use zfail_plan::topology::{Surface, Topology, TopologyError};
 pub use zfail_plan::view::{Projection, View};
 pub use zfail_plan::{self, glam};

@@ -15,10 +15,10 @@ use wgpu::{
     BindingType, BufferBindingType, CommandEncoder, Device, IndexFormat, Queue, RenderPass, RenderPipeline,
     ShaderModule, ShaderStages, TextureView,
 };
+use zfail_plan::bounds::Bounds;
 use zfail_plan::plan::{
     self, Counting, DarkCap, Draw, Extraction, FramePlan, LightCap, LightStats, Measures, Planner, ShadowLight, Tiles,
 };
-use zfail_plan::scene::Bounds;
 use zfail_plan::scissor::Rectangle;
 use zfail_plan::topology::{Surface, Topology};
 use zfail_plan::view::View;

@@ -11,8 +11,8 @@ use crate::error::Error;
 use crate::shadows::Caster;
 use crate::tiles::{Sides, TilePass, TileStats};
 use wgpu::{Device, Queue};
+use zfail_plan::bounds::Bounds;
 use zfail_plan::plan::{Counting, Draw, FramePlan, Measures, Tiles};
-use zfail_plan::scene::Bounds;
 use zfail_plan::view::{Projection, View};
 
 /// What the draws of a frame refer to.

@@ -5,8 +5,8 @@ mod stage;
 
 use stage::{Random, Setup, Soup, draw};
 use zfail::glam::{DAffine3, DMat3, DQuat, DVec3};
-use zfail::zfail_plan::plan::{DarkCap, Extraction, LightCap};
 use zfail::{Counting, FramePlan, LightKind, Measures, Projection, Silhouettes, Technique, Tiles, View, ZPass};
+use zfail_plan::plan::{DarkCap, Extraction, LightCap};
 
 /// A closed ring around y: not convex, with a hole.
 fn ring(segments: u32, sides: u32) -> Soup {

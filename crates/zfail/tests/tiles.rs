@@ -8,10 +8,10 @@ mod stage;
 use stage::{Setup, Soup, stencil};
 use zfail::glam::{DAffine3, DMat3, DQuat, DVec3};
 use zfail::tiles::{Sides, TilePass, VerdictPipeline};
-use zfail::zfail_plan::casting;
-use zfail::zfail_plan::plan::{self, Frame, Planner};
-use zfail::zfail_plan::scene::Bounds;
 use zfail::{Counting, LightKind, Projection, ShadowLight, Target, Technique, Topology, View};
+use zfail_plan::bounds::Bounds;
+use zfail_plan::casting;
+use zfail_plan::plan::{self, Frame, Planner};
 
 /// Not a multiple of the tile size.
 const SIZE: [u32; 2] = [163, 117];

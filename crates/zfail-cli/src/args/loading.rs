@@ -3,7 +3,7 @@
 use crate::names;
 use clap::Args;
 use std::ops::RangeInclusive;
-use zfail_scene::Limits;
+use zfail_files::Limits;
 
 /// What is made of a scene's file, and what that may cost.
 #[derive(Args, Clone, Debug)]

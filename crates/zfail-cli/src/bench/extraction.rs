@@ -9,11 +9,12 @@ use cpu_time::ProcessTime;
 use serde::Serialize;
 use std::time::{Duration, Instant};
 use zfail_plan::glam::{DAffine3, DVec3};
+use zfail_plan::light::LightKind;
 use zfail_plan::plan::{Counting, Measures, ShadowLight, Silhouettes, Technique};
-use zfail_plan::scene::{LightKind, Mesh};
 use zfail_plan::view::View;
 use zfail_render::zfail::{Caster, Frame, MeshId, Shadows};
 use zfail_render::{Gpu, wgpu};
+use zfail_scene::Mesh;
 
 /// Frames before the clock counts: pipelines are compiled, buffers have grown.
 const WARM_UP: usize = 2;

@@ -10,8 +10,8 @@ use crate::render::failed;
 use cpu_time::ProcessTime;
 use indicatif::ProgressBar;
 use std::time::{Duration, Instant};
-use zfail_plan::scene::Pose;
 use zfail_render::{Exposure, FrameStats, Gpu, RenderError, Renderer, Settings, Technique};
+use zfail_scene::Pose;
 
 /// Frames before the clock counts: pipelines are compiled, buffers have grown, caches are filled.
 const WARM_UP: usize = 2;

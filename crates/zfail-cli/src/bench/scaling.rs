@@ -13,13 +13,14 @@ use crate::console;
 use crate::error::Error;
 use serde::Serialize;
 use std::time::Instant;
+use zfail_builtin::shapes;
 use zfail_plan::glam::{DAffine3, DMat3, DVec3};
+use zfail_plan::light::LightKind;
 use zfail_plan::plan::{Caster, Counting, Frame, LightStats, Measures, Planner, ShadowLight, Technique};
-use zfail_plan::scene::{LightKind, Mesh};
 use zfail_plan::topology::Topology;
 use zfail_plan::view::{Projection, View};
 use zfail_render::Gpu;
-use zfail_scene::builtin::shapes;
+use zfail_scene::Mesh;
 
 /// Triangles, about.
 pub const SIZES: [usize; 4] = [1_000, 10_000, 100_000, 1_000_000];

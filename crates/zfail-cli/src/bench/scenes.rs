@@ -5,9 +5,9 @@
 use crate::args::{self, Moment};
 use crate::error::Error;
 use crate::input;
-use zfail_plan::scene::{Bounds, Camera, Pose};
+use zfail_plan::bounds::Bounds;
 use zfail_plan::view::{Projection, View};
-use zfail_scene::Animated;
+use zfail_scene::{Animated, Camera, Pose};
 
 /// The scenes where none is named.
 pub const DEFAULT: [&str; 5] =

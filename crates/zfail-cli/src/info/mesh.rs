@@ -3,8 +3,8 @@
 use super::report::alpha_name;
 use crate::error::Error;
 use serde::Serialize;
-use zfail_plan::scene::{AlphaMode, Scene};
-use zfail_plan::topology::{NONE, Part, Shape, Surface, Topology};
+use zfail_plan::topology::{NONE, Part, Shape, Surface};
+use zfail_scene::{AlphaMode, Scene};
 
 /// A mesh: its size, how closed it is, and how it casts.
 #[derive(Serialize)]
@@ -55,7 +55,8 @@ impl MeshReport {
     /// If the mesh is beyond what topology supports.
     pub fn new(scene: &Scene, index: usize) -> Result<Self, Error> {
         let mesh = &scene.meshes[index];
-        let topology = Topology::of(scene, index)
+        let topology = scene
+            .topology(index)
             .map_err(|e| Error::failed(format!("mesh {index} '{}' cannot cast shadows: {e}", mesh.name)))?;
         let [boundary_edges, _, non_manifold_edges] = topology.edge_counts();
         let inconsistent = topology.incidence().filter(|(_, incident)| {

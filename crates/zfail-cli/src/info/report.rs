@@ -7,10 +7,11 @@ use super::mesh::MeshReport;
 use crate::error::Error;
 use rayon::prelude::*;
 use serde::Serialize;
-use zfail_plan::scene::{AlphaMode, Bounds, Camera, Instance, Light, LightKind, Material};
+use zfail_files::{ChannelInfo, FileInfo, Treatment, extension_treatment};
+use zfail_plan::bounds::Bounds;
+use zfail_plan::light::LightKind;
 use zfail_plan::view::Projection;
-use zfail_scene::read::{ChannelInfo, FileInfo};
-use zfail_scene::{Animated, Animation, Treatment, extension_treatment};
+use zfail_scene::{AlphaMode, Animated, Animation, Camera, Instance, Light, Material};
 
 /// A scene.
 #[derive(Serialize)]

@@ -6,7 +6,7 @@ use super::report::{
     AnimationReport, CameraReport, ExtensionReport, ImageReport, InstanceReport, LightReport, MaterialReport, Report,
 };
 use std::collections::BTreeMap;
-use zfail_scene::read::FileInfo;
+use zfail_files::FileInfo;
 
 /// The whole report.
 pub fn text(report: &Report) -> String {

@@ -8,9 +8,9 @@ use crate::input;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use zfail_figures::{Figures, Options, Overlay, ThirdPerson};
-use zfail_plan::scene::{Pose, Scene};
 use zfail_plan::view::View;
 use zfail_render::{Gpu, Picture, Renderer, Technique};
+use zfail_scene::{Pose, Scene};
 
 /// What `zfail render` draws beside the picture.
 #[derive(Args, Clone, Debug)]

@@ -14,8 +14,7 @@ use std::fs;
 use std::mem::{swap, take};
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::Xxh3;
-use zfail_plan::scene::Mesh;
-use zfail_scene::Animated;
+use zfail_scene::{Animated, Mesh};
 
 /// A digest of everything that decides how a frame looks.
 #[derive(Clone)]
@@ -113,10 +112,9 @@ impl Write for Request {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use zfail_scene::builtin;
 
     fn scene() -> Animated {
-        builtin::animated("lantern").expect("a scene with meshes and an image")
+        zfail_builtin::animated("lantern").expect("a scene with meshes and an image")
     }
 
     fn seal(change: impl FnOnce(&mut Animated)) -> String {

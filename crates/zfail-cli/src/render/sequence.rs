@@ -18,10 +18,10 @@ use rayon::prelude::*;
 use std::collections::HashSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use zfail_plan::scene::{Bounds, Camera, Pose};
+use zfail_plan::bounds::Bounds;
 use zfail_plan::view::{Projection, View};
 use zfail_render::{Exposure, Renderer, Settings};
-use zfail_scene::Animated;
+use zfail_scene::{Animated, Camera, Pose};
 
 /// A frame to be.
 struct Frame {

@@ -8,8 +8,9 @@ use super::proof::{ENOUGH, LightProof};
 use std::collections::HashMap;
 use zfail_oracle::{CastTable, Oracle, Pixel, Truth};
 use zfail_plan::glam::{DAffine3, DMat3, DVec3};
-use zfail_plan::scene::{Light, LightKind, Scene};
+use zfail_plan::light::LightKind;
 use zfail_plan::view::{Projection, View};
+use zfail_scene::{Light, Scene};
 
 /// Of previews.
 const PREVIEW: [u32; 2] = [96, 54];
@@ -203,7 +204,7 @@ mod tests {
 
     #[test]
     fn where_a_picture_proves_nothing_a_closer_one_does() {
-        let scene = zfail_scene::builtin::scene("jail").unwrap();
+        let scene = zfail_builtin::scene("jail").unwrap();
         let oracle = Oracle::new(&scene);
         // Away from everything.
         let center = scene.bounds().center();
@@ -220,7 +221,7 @@ mod tests {
     #[test]
     fn a_search_for_what_is_not_there_ends() {
         // A floor alone: nothing lies in shadow.
-        let mut scene = zfail_scene::builtin::scene("jail").unwrap();
+        let mut scene = zfail_builtin::scene("jail").unwrap();
         scene.instances.truncate(1);
         scene.instances[0].casts_shadow = false;
         let oracle = Oracle::new(&scene);

@@ -8,8 +8,8 @@ use std::collections::HashSet;
 use std::hash::BuildHasher;
 use zfail_plan::casting;
 use zfail_plan::closure::{self, Closure};
-use zfail_plan::scene::Scene;
 use zfail_plan::topology::Topology;
+use zfail_scene::Scene;
 
 /// Triangles of meshes that are examined at most, under all lights together: some ten seconds.
 const MOST: usize = 8_000_000;
@@ -83,8 +83,8 @@ mod tests {
 
     #[test]
     fn copies_are_examined_once_and_what_is_left_out_is_counted() {
-        let scene = zfail_scene::builtin::scene("jail").unwrap();
-        let topologies = closure::topologies(&scene).unwrap();
+        let scene = zfail_builtin::scene("jail").unwrap();
+        let topologies = scene.topologies().unwrap();
         let lights = || 0..scene.lights.len();
         let all = of(&scene, &topologies, lights());
         assert!(all.left_out == 0 && all.closure.open_edges == 0 && all.closure.volumes > 10, "{all:?}");

@@ -9,7 +9,6 @@ use crate::render;
 use indicatif::ProgressBar;
 use std::time::Instant;
 use zfail_oracle::{CastTable, Oracle, Truth};
-use zfail_plan::casting;
 use zfail_plan::topology::Topology;
 use zfail_plan::view::View;
 use zfail_render::{AovKind, Aovs, RenderError, Renderer};
@@ -117,7 +116,7 @@ pub fn draw(renderer: &mut Renderer<'_>, shot: &Shot, variant: &Variant) -> Resu
 
 /// What is right for a light.
 pub fn truth(oracle: &Oracle, shot: &Shot, view: &View, topologies: &[Option<Topology>], light: usize) -> Truth {
-    let castings = casting::of_scene(&shot.scene, topologies, light);
+    let castings = shot.scene.castings(topologies, light);
     let casts = CastTable::from_fn(&shot.scene, |instance, triangle| castings[instance][triangle].into());
     oracle.judge(view, &shot.scene.lights[light], &casts)
 }

@@ -27,7 +27,6 @@ use proof::Proof;
 use report::{Closeup, Report};
 use std::path::PathBuf;
 use zfail_oracle::Oracle;
-use zfail_plan::closure::topologies;
 use zfail_render::{Gpu, Renderer};
 
 /// Views beside the one that is asked for.
@@ -79,7 +78,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let progress = console::progress(variants.len() + shot.lights.len(), quiet);
     let mut renderer = Renderer::new(&gpu, &shot.scene).map_err(|e| render::failed(&e))?;
     let topologies =
-        topologies(&shot.scene).map_err(|e| Error::failed(format!("{}: {}", shot.scene.name, input::chain(&e))))?;
+        shot.scene.topologies().map_err(|e| Error::failed(format!("{}: {}", shot.scene.name, input::chain(&e))))?;
     let oracle = Oracle::new(&shot.scene);
     let judge = Judge { oracle: &oracle, topologies: &topologies, progress: &progress };
     judge.foresee(&shot, quiet)?;

@@ -6,7 +6,7 @@
 
 use super::report::LightReport;
 use serde::Serialize;
-use zfail_plan::scene::Scene;
+use zfail_scene::Scene;
 
 /// As many pixels of each kind are enough.
 pub const ENOUGH: usize = 100;

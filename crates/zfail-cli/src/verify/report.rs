@@ -11,9 +11,9 @@ use crate::judged::JudgedLight;
 use serde::Serialize;
 use zfail_oracle::{SizeMismatch, Truth, Wrong};
 use zfail_plan::closure::Closure;
-use zfail_plan::scene::Scene;
 use zfail_plan::view::View;
 use zfail_render::{Aovs, Gpu};
+use zfail_scene::Scene;
 
 /// Wrong pixels that a report lists.
 const LISTED: usize = 16;

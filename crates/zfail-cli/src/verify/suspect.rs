@@ -133,10 +133,10 @@ mod tests {
             Err(e) if std::env::var_os("ZFAIL_REQUIRE_GPU").is_some() => panic!("{e}"),
             Err(e) => return eprintln!("skipped: {e}"),
         };
-        let scene = zfail_scene::builtin::scene("jail").unwrap();
+        let scene = zfail_builtin::scene("jail").unwrap();
         let view = scene.cameras[0].view([48, 27], &scene.bounds());
         let shot = Shot { scene, camera: String::new(), view, lights: vec![0] };
-        let topologies = zfail_plan::closure::topologies(&shot.scene).unwrap();
+        let topologies = shot.scene.topologies().unwrap();
         let right =
             super::super::examined::truth(&zfail_oracle::Oracle::new(&shot.scene), &shot, &shot.view, &topologies, 0);
         let mut inverted = right.clone();

@@ -4,9 +4,10 @@
 
 use zfail_exact::bench::{self, Images};
 use zfail_plan::glam::{DAffine3, DMat3, DVec3};
-use zfail_plan::scene::{Instance, Light, LightKind, LightShape, Material, Mesh, Primitive, Scene};
+use zfail_plan::light::LightKind;
 use zfail_plan::view::{Projection, View};
 use zfail_render::{Gpu, GpuOptions, Settings, Technique, Tiles};
+use zfail_scene::{Instance, Light, LightShape, Material, Mesh, Primitive, Scene};
 
 const SEEN: [[f32; 3]; 3] = [
     [0.015_434_263, 0.025_617_793, -0.013_433_008],

@@ -3,10 +3,11 @@
 
 use std::env;
 use zfail_figures::{Figures, Options, Overlay};
-use zfail_render::zfail_plan::glam::{DAffine3, DMat3, DVec2, DVec3};
-use zfail_render::zfail_plan::scene::{Instance, Light, LightKind, LightShape, Mesh, Scene};
-use zfail_render::zfail_plan::view::{Projection, View};
+use zfail_plan::glam::{DAffine3, DMat3, DVec2, DVec3};
+use zfail_plan::light::LightKind;
+use zfail_plan::view::{Projection, View};
 use zfail_render::{Gpu, GpuOptions, wgpu};
+use zfail_scene::{Instance, Light, LightShape, Mesh, Scene};
 
 /// Legends and labels have no room here.
 pub const SIZE: [u32; 2] = [128, 96];

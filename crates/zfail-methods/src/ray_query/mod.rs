@@ -23,9 +23,10 @@ use wgpu::{
     BlasTriangleGeometry, BlasTriangleGeometrySizeDescriptor, CreateBlasDescriptor, CreateTlasDescriptor, IndexFormat,
     Tlas, TlasInstance, VertexFormat,
 };
-use zfail_plan::scene::{Bounds, Light};
+use zfail_plan::bounds::Bounds;
 use zfail_plan::view::{Projection, View};
 use zfail_render::Gpu;
+use zfail_scene::Light;
 
 /// How far off the surface rays start, as a share of the distance to the eye or of the light to the eye, whichever is
 /// greater: a few roundings of f32. With none, half of all lit pixels go dark; with 16 times as much, rays start beyond thin

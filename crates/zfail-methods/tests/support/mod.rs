@@ -6,10 +6,10 @@
 use zfail_methods::{Error, Method, Methods, Options, Shadow};
 use zfail_oracle::{CastTable, Oracle, Truth};
 use zfail_plan::glam::{DAffine3, DMat3, DVec3};
-use zfail_plan::scene::{Instance, Light, LightKind, LightShape, Material, Mesh, Primitive, Scene};
+use zfail_plan::light::LightKind;
 use zfail_plan::view::{Projection, View};
 use zfail_render::{Gpu, GpuOptions};
-use zfail_scene::builtin;
+use zfail_scene::{Instance, Light, LightShape, Material, Mesh, Primitive, Scene};
 
 pub const SIZE: [u32; 2] = [160, 100];
 
@@ -42,7 +42,7 @@ impl<'g> Case<'g> {
 
     /// A built-in scene under its first camera, with one of its lights.
     pub fn builtin(gpu: &'g Gpu, name: &str, light: usize) -> Self {
-        let mut scene = builtin::scene(name).expect("a built-in scene");
+        let mut scene = zfail_builtin::scene(name).expect("a built-in scene");
         scene.lights = vec![scene.lights[light].clone()];
         let view = scene.cameras[0].view(SIZE, &scene.bounds());
         Self::new(gpu, &scene, view)

@@ -1,11 +1,10 @@
 //! Small scenes for the oracle's own tests.
 #![allow(dead_code, missing_docs)]
 
-use zfail_plan::{
-    glam::{DAffine3, DMat3, DVec3},
-    scene::{Instance, Light, LightKind, LightShape, Material, Mesh, Primitive, Scene},
-    view::{Projection, View},
-};
+use zfail_plan::glam::{DAffine3, DMat3, DVec3};
+use zfail_plan::light::LightKind;
+use zfail_plan::view::{Projection, View};
+use zfail_scene::{Instance, Light, LightShape, Material, Mesh, Primitive, Scene};
 
 /// SplitMix64: enough randomness for tests, the same everywhere.
 pub struct Random(pub u64);

@@ -8,8 +8,8 @@
 //!
 //! In: the weights of one pair, then the view. Out: the distance.
 
+use crate::bounds::Bounds;
 use crate::casting::ObjectLight;
-use crate::scene::Bounds;
 use crate::topology::Topology;
 use crate::view::{Projection, View};
 use glam::{DAffine3, DVec3};

@@ -10,8 +10,8 @@
 
 use super::near_count;
 use super::placed::Placed;
+use crate::bounds::Bounds;
 use crate::casting::ObjectLight;
-use crate::scene::Bounds;
 use crate::topology::Topology;
 use glam::{DAffine3, DVec3, DVec4};
 use std::f64::consts::{PI, TAU};

@@ -31,8 +31,9 @@ pub use extraction::{DarkCap, Extraction, LightCap};
 pub use stats::{Culled, LightStats, Triangles};
 pub use technique::{Counting, Measures, Silhouettes, Technique, Tiles, UnknownTechnique, ZPass};
 
+use crate::bounds::Bounds;
 use crate::casting::{Casting, ObjectLight};
-use crate::scene::{Bounds, LightKind};
+use crate::light::LightKind;
 use crate::scissor::Rectangle;
 use crate::topology::Topology;
 use crate::view::View;

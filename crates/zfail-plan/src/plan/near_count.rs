@@ -6,8 +6,8 @@
 //! number of layers between the light and a point of the rectangle changes, and no casting triangle enters the near slab.
 
 use super::pyramid::Pyramid;
+use crate::bounds::Bounds;
 use crate::casting::ObjectLight;
-use crate::scene::Bounds;
 use crate::topology::{Cover, Topology};
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;

@@ -63,7 +63,7 @@ impl Shadow {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Bounds;
+    use crate::bounds::Bounds;
 
     fn cube() -> Topology {
         let positions: Vec<[f32; 3]> =

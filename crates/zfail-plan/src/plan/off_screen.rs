@@ -5,8 +5,8 @@
 //! infinity is no special case: the volume of a box is the cone of its 8 corners and their 8 extrusions, and lies
 //! outside a plane through the eye exactly if all 16 do.
 
+use crate::bounds::Bounds;
 use crate::casting::ObjectLight;
-use crate::scene::Bounds;
 use crate::scissor::Rectangle;
 use crate::view::{Projection, View};
 use glam::{DAffine3, DMat4, DVec4};

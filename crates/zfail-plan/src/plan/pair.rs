@@ -9,7 +9,7 @@ use super::placed::Placed;
 use super::pyramid::Pyramid;
 use super::store::Place;
 use crate::casting::{self, Casting, ObjectLight};
-use crate::scene::LightKind;
+use crate::light::LightKind;
 use crate::scissor::Rectangle;
 use crate::stack::{self, Outline};
 use crate::topology::{Cover, NONE, Part, Topology};

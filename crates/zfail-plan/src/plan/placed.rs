@@ -4,8 +4,9 @@
 //! frame, whatever the number of lights.
 
 use super::Caster;
+use crate::bounds::Bounds;
 use crate::casting::{self, ObjectLight};
-use crate::scene::{Bounds, LightKind};
+use crate::light::LightKind;
 use crate::view::{Projection, View};
 use glam::{DAffine3, DMat3, DVec3, DVec4};
 

@@ -8,8 +8,8 @@
 //! the least over all the hull's points. So there is no degenerate case: a light on the near plane, behind it or inside
 //! the view only makes planes that exclude little.
 
+use crate::bounds::Bounds;
 use crate::casting::ObjectLight;
-use crate::scene::Bounds;
 use crate::scissor::Rectangle;
 use crate::view::{Projection, View};
 use glam::{DAffine3, DVec3};

@@ -2,7 +2,8 @@
 //!
 //! In: a light and a view. Out: convex bounds of the lit region, relative to the eye.
 
-use crate::scene::{Bounds, LightKind};
+use crate::bounds::Bounds;
+use crate::light::LightKind;
 use crate::scissor::{self, Rectangle};
 use crate::view::View;
 use glam::{DVec3, DVec4};

@@ -5,8 +5,8 @@
 //! z-pass nor z-fail misses it there. Distances are relative to the eye.
 
 use super::reach::Reach;
+use crate::bounds::Bounds;
 use crate::convex::{Knife, Polyhedron};
-use crate::scene::Bounds;
 use crate::scissor::{self, Rectangle};
 use crate::view::{Projection, View};
 use glam::{DVec3, DVec4};
@@ -151,7 +151,7 @@ fn frustum(view: &View) -> [DVec4; 5] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::LightKind;
+    use crate::light::LightKind;
     use glam::DAffine3;
 
     #[test]

@@ -7,7 +7,7 @@ use super::Frame;
 use super::pair::{Pair, Role};
 use super::placed::Placed;
 use super::sheets::sheets;
-use crate::scene::LightKind;
+use crate::light::LightKind;
 use crate::stack::{self, Caster, Outline, Work};
 use crate::topology::Topology;
 use std::ops::Range;

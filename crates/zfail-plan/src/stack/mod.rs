@@ -83,7 +83,7 @@ pub enum Frame {
 impl Frame {
     /// The frame for a homogeneous light and the bounding box of all casters.
     #[must_use]
-    pub fn new(light: DVec4, bounds: &crate::scene::Bounds) -> Self {
+    pub fn new(light: DVec4, bounds: &crate::bounds::Bounds) -> Self {
         if light.w != 0.0 {
             return Self::Sphere;
         }

@@ -4,7 +4,7 @@
 //! any pose follow from the facing in that pose; whether a part is a simple solid does not, and is never asked.
 
 use super::{Topology, TopologyError, check_finite};
-use crate::scene::Bounds;
+use crate::bounds::Bounds;
 
 /// Where welded positions come from.
 #[derive(Clone, Debug)]

@@ -21,7 +21,7 @@ pub use convex::ConvexPart;
 pub use parts::{Cover, Part, Shape};
 pub use twins::same_winding;
 
-use crate::scene::{Bounds, Scene};
+use crate::bounds::Bounds;
 use rayon::prelude::*;
 
 /// Marks an edge record's missing second triangle.
@@ -161,22 +161,6 @@ impl Topology {
             return Err(TopologyError::WrongLength { vertices: positions.len(), found: alike.len() });
         }
         Self::build(positions, triangles, Some(alike), |t| surface(t).into())
-    }
-
-    /// The topology of mesh number `mesh` of `scene`, with what its materials are to light.
-    ///
-    /// # Errors
-    /// As [`Self::new`] and [`Self::bending`].
-    ///
-    /// # Panics
-    /// If there is no such mesh.
-    pub fn of(scene: &Scene, mesh: usize) -> Result<Self, TopologyError> {
-        let surface = |t| scene.triangle_surface(mesh, t);
-        let mesh = &scene.meshes[mesh];
-        match mesh.bends() {
-            false => Self::new(&mesh.positions, &mesh.triangles, surface),
-            true => Self::bending(&mesh.positions, &mesh.triangles, &mesh.alike, surface),
-        }
     }
 
     fn build(

@@ -4,7 +4,7 @@
 //! whether it is the boundary of a simple solid.
 
 use super::{NONE, Surface, Topology, closed, embedded};
-use crate::scene::Bounds;
+use crate::bounds::Bounds;
 use rayon::prelude::*;
 use std::ops::Range;
 

@@ -3,8 +3,8 @@
 
 use std::f64::consts::TAU;
 use zfail_plan::glam::{DAffine3, DVec3};
+use zfail_plan::light::LightKind;
 use zfail_plan::plan::{Caster, Counting, Frame, FramePlan, Planner, ShadowLight, Technique};
-use zfail_plan::scene::LightKind;
 use zfail_plan::topology::Topology;
 use zfail_plan::view::{Projection, View};
 

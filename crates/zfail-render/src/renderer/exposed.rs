@@ -6,8 +6,8 @@ use crate::gpu_data::LightRecord;
 use crate::scene::SceneOnGpu;
 use crate::surroundings::Surroundings;
 use crate::{Exposure, lights};
-use zfail_plan::scene::Sky;
 use zfail_plan::view::View;
+use zfail_scene::Sky;
 
 /// Light of a frame, scaled to the range of half floats.
 #[derive(Debug)]

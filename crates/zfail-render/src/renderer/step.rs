@@ -13,7 +13,7 @@ use crate::verdict_pass::{Verdict, VerdictPass, VerdictTargets};
 use crate::{RenderError, Settings, lights, tone_map};
 use half::f16;
 use zfail::LightStats;
-use zfail_plan::scene::LightKind;
+use zfail_plan::light::LightKind;
 use zfail_plan::view::View;
 
 impl Renderer<'_> {

@@ -3,12 +3,11 @@
 // Every test file uses its own part of this.
 #![allow(dead_code)]
 
-use zfail_render::zfail_plan::glam::{DAffine3, DMat3, DVec3};
-use zfail_render::zfail_plan::scene::{
-    AlphaMode, Instance, Light, LightKind, LightShape, Material, Mesh, Primitive, Scene,
-};
-use zfail_render::zfail_plan::view::{Projection, View};
+use zfail_plan::glam::{DAffine3, DMat3, DVec3};
+use zfail_plan::light::LightKind;
+use zfail_plan::view::{Projection, View};
 use zfail_render::{Exposure, Gpu, GpuOptions, Picture, Renderer, Settings};
+use zfail_scene::{AlphaMode, Instance, Light, LightShape, Material, Mesh, Primitive, Scene};
 
 /// A device, or `None` with the reason on standard error.
 pub fn gpu() -> Option<Gpu> {

@@ -9,14 +9,14 @@
 mod rig;
 mod track;
 
-pub(crate) use rig::{MAX_COORDINATE, Move, Node, Parent, Rig, Trs, placed};
-pub(crate) use track::{Interpolation, Track};
+pub use rig::{MAX_COORDINATE, Move, Node, Parent, Rig, Trs, placed};
+pub use track::{Interpolation, Track};
 
 use crate::complete::Framing;
 use crate::cut::{self, CutMesh};
 use crate::deform::{Body, Frame};
+use crate::{Pose, Scene};
 use glam::DAffine3;
-use zfail_plan::scene::{Pose, Scene};
 
 /// A scene with the animations that move its instances, lights and cameras, and bend its meshes.
 #[derive(Clone, Debug, Default)]
@@ -28,8 +28,10 @@ pub struct Animated {
     pub animations: Vec<Animation>,
     /// How the last of the scene's cameras frames it, if [`crate::Setting::complete`] has added that.
     pub framing: Option<Framing>,
-    pub(crate) rig: Rig,
-    pub(crate) bodies: Vec<Body>,
+    /// The nodes that move.
+    pub rig: Rig,
+    /// The meshes that bend.
+    pub bodies: Vec<Body>,
 }
 
 /// An animation by name.
@@ -39,13 +41,15 @@ pub struct Animation {
     pub name: String,
     /// Time of the last key, seconds. Beyond it, and before the first key, everything stands still.
     pub duration: f64,
-    pub(crate) moves: Vec<Move>,
-    pub(crate) morphs: Vec<Morph>,
+    /// What it does with nodes, in the order of the rig's.
+    pub moves: Vec<Move>,
+    /// What it does with morph weights.
+    pub morphs: Vec<Morph>,
 }
 
 /// What an animation does with the morph weights of a body.
 #[derive(Clone, Debug)]
-pub(crate) struct Morph {
+pub struct Morph {
     /// Index into [`Animated::bodies`].
     pub body: usize,
     /// By morph target.

@@ -3,18 +3,23 @@
 //! In: moves of nodes at a time. Out: the placements of instances, lights and cameras below them.
 
 use super::Track;
+use crate::Pose;
 use crate::placement::{invertible, is_moderate, rigid};
 use glam::{DAffine3, DQuat, DVec3};
-use zfail_plan::scene::{Bounds, LightKind, Pose};
+use zfail_plan::bounds::Bounds;
+use zfail_plan::light::LightKind;
 
 /// Coordinates beyond this, in metres, are refused: their squares must stay finite in single precision.
-pub(crate) const MAX_COORDINATE: f64 = 1e15;
+pub const MAX_COORDINATE: f64 = 1e15;
 
 /// The properties of a node that animations move.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Trs {
+pub struct Trs {
+    /// Metres.
     pub translation: DVec3,
+    /// Of unit length.
     pub rotation: DQuat,
+    /// Along the node's own axes, before it is turned.
     pub scale: DVec3,
 }
 
@@ -27,13 +32,16 @@ impl Trs {
 
 /// What one animation does with one node.
 #[derive(Clone, Debug)]
-pub(crate) struct Move {
+pub struct Move {
     /// Index into the rig's nodes.
     pub node: usize,
     /// Properties without a track keep these values.
     pub rest: Trs,
+    /// As [`Trs::translation`].
     pub translation: Option<Track<3>>,
+    /// As [`Trs::rotation`].
     pub rotation: Option<Track<4>>,
+    /// As [`Trs::scale`].
     pub scale: Option<Track<3>>,
 }
 
@@ -60,7 +68,8 @@ impl Move {
 
 /// A node that some animation moves, itself or by an ancestor.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Node {
+pub struct Node {
+    /// What it is relative to.
     pub parent: Parent,
     /// At rest.
     pub parent_from_node: DAffine3,
@@ -68,7 +77,7 @@ pub(crate) struct Node {
 
 /// What a node of the rig is relative to.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Parent {
+pub enum Parent {
     /// World from parent, which nothing moves.
     Fixed(DAffine3),
     /// An earlier node of the rig.
@@ -77,7 +86,8 @@ pub(crate) enum Parent {
 
 /// Nodes that move, parents before children, and what they carry.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Rig {
+pub struct Rig {
+    /// Those that move.
     pub nodes: Vec<Node>,
     instances: Vec<Carried<DAffine3>>,
     lights: Vec<Carried<LightKind>>,
@@ -183,7 +193,7 @@ impl<T> Carried<T> {
 }
 
 /// A light like `kind` where its node stands; it shines along the node's -z axis.
-pub(crate) fn placed(kind: &LightKind, world_from_node: &DAffine3) -> LightKind {
+pub fn placed(kind: &LightKind, world_from_node: &DAffine3) -> LightKind {
     let position = world_from_node.translation;
     let direction = (-world_from_node.matrix3.z_axis).try_normalize().unwrap_or(DVec3::NEG_Z);
     match *kind {

@@ -4,14 +4,12 @@
 
 use crate::placement::unit_quaternion;
 use glam::{DQuat, DVec3};
-use serde::Deserialize;
 use std::array;
 use std::sync::Arc;
 
 /// How values between two keys follow from them.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
-#[serde(rename_all = "UPPERCASE")]
-pub(crate) enum Interpolation {
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Interpolation {
     /// The value of the last key passed.
     Step,
     /// Straight, for rotations along the shortest arc.
@@ -30,7 +28,7 @@ impl Interpolation {
 
 /// Values of `N` components at ascending times. The keys of a rotation are quaternions (x, y, z, w) of any length.
 #[derive(Clone, Debug)]
-pub(crate) struct Track<const N: usize> {
+pub struct Track<const N: usize> {
     interpolation: Interpolation,
     /// Seconds.
     times: Arc<[f32]>,

@@ -8,9 +8,9 @@
 //! that crops nothing.
 
 use super::sight::upright;
+use crate::Camera;
 use glam::{DAffine3, DMat3, DVec3};
 use std::f64::consts::PI;
-use zfail_plan::scene::Camera;
 use zfail_plan::view::Projection;
 
 /// Half the vertical angle of view, and the most that half the horizontal one may be.
@@ -157,7 +157,7 @@ const NAME: &str = "framing";
 mod tests {
     use super::*;
     use glam::DMat4;
-    use zfail_plan::scene::Bounds;
+    use zfail_plan::bounds::Bounds;
 
     /// Least and greatest of x and y on the screen, -1 to 1.
     fn extent(points: &[DVec3], camera: &Camera, aspect: f64) -> [[f64; 2]; 2] {

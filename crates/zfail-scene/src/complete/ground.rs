@@ -2,8 +2,9 @@
 
 use super::posed::{Posed, spread};
 use super::sight::{Blocks, Lens, Sight};
+use crate::{Ground, Instance, Material, Scene};
 use glam::DVec3;
-use zfail_plan::scene::{Bounds, Ground, Instance, Material, Scene};
+use zfail_plan::bounds::Bounds;
 use zfail_plan::topology::Surface;
 
 /// Whether there is a ground.

@@ -5,9 +5,11 @@
 
 use super::posed::{Posed, Sample};
 use super::sight::{Blocks, Lens, Sight};
+use crate::{Light, LightShape, Scene, Sky, world_triangle};
 use glam::DVec3;
 use std::f64::consts::PI;
-use zfail_plan::scene::{Bounds, Light, LightKind, LightShape, Scene, Sky, world_triangle};
+use zfail_plan::bounds::Bounds;
+use zfail_plan::light::LightKind;
 
 /// Where the sun stands.
 #[derive(Clone, Copy, Debug, PartialEq)]

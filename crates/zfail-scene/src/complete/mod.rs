@@ -15,14 +15,15 @@ pub use framing::Framing;
 pub use ground::{GroundChoice, fitting_ground};
 pub use light::{Sun, fitting_ambient, fitting_sky};
 
-use crate::Animated;
+use crate::{Animated, Mesh, Pose, Scene};
 use framing::Reach;
 use glam::{DMat3, DVec3};
 use posed::Posed;
 use sight::{Lens, upright};
 use std::mem;
 use viewpoint::Viewpoint;
-use zfail_plan::scene::{Bounds, LightKind, Mesh, Pose, Scene};
+use zfail_plan::bounds::Bounds;
+use zfail_plan::light::LightKind;
 
 /// Adds the camera and the lights that a scene lacks, as for a picture of 16 by 9, and no surroundings.
 pub fn complete(scene: &mut Scene) {

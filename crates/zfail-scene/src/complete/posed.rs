@@ -1,7 +1,8 @@
 //! A scene in one of its poses, read where it lies.
 
+use crate::{Mesh, Pose, Scene};
 use glam::{DAffine3, DVec3};
-use zfail_plan::scene::{Bounds, Mesh, Pose, Scene};
+use zfail_plan::bounds::Bounds;
 use zfail_plan::topology::Surface;
 
 /// A scene, and where everything is.

@@ -2,8 +2,9 @@
 //! it.
 
 use super::posed::{Posed, Sample};
+use crate::Camera;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
-use zfail_plan::scene::{Bounds, Camera};
+use zfail_plan::bounds::Bounds;
 use zfail_plan::topology::Surface;
 use zfail_plan::view::Projection;
 

@@ -10,7 +10,7 @@ use super::posed::{Posed, Sample};
 use super::sight::{Blocks, Lens, Sight};
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
-use zfail_plan::scene::Bounds;
+use zfail_plan::bounds::Bounds;
 
 /// From where.
 #[derive(Clone, Copy, Debug, PartialEq)]

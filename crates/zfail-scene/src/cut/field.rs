@@ -6,9 +6,9 @@
 //! Coordinates are in texels, x along u and y along v: texel (i, j) covers the square from (i, j) to (i + 1, j + 1), and node
 //! (i, j) is its centre. Wrapping makes the plane a torus, a cylinder or a plane whose border goes on for ever.
 
+use crate::{Filter, Image, Texture, Wrap};
 use glam::DVec2;
 use std::borrow::Cow;
-use zfail_plan::scene::{Filter, Image, Texture, Wrap};
 
 /// Where a clamped texture ends after all, in texels beyond its border: farther out than any coordinate that is cut.
 pub(super) const FAR: f64 = (1_u64 << 26) as f64;

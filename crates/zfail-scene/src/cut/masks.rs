@@ -5,9 +5,9 @@
 use super::field::AlphaField;
 use super::limits::{Limits, Step};
 use super::outline::Outline;
+use crate::{AlphaMode, Filter, Image, Material, Mesh, Primitive, Texture, TextureRef};
 use glam::DVec2;
 use rustc_hash::FxHashMap;
-use zfail_plan::scene::{AlphaMode, Filter, Image, Material, Mesh, Primitive, Texture, TextureRef};
 
 /// How a primitive is masked.
 #[derive(Clone, Copy, Debug, PartialEq)]

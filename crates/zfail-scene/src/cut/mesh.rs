@@ -8,11 +8,11 @@ use super::masks::{Masks, Pattern, Shape, alpha, triangles_of};
 use super::product;
 use super::triangle::{Corner, Cut, cut};
 use super::vertices::{Source, Vertices, extend, extend_alike, extend_attribute};
+use crate::{AlphaMode, Instance, Material, Mesh, Primitive, Scene};
 use glam::DVec2;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use std::sync::atomic::Ordering;
-use zfail_plan::scene::{AlphaMode, Instance, Material, Mesh, Primitive, Scene};
 
 /// A mesh that was cut. Its first vertices are those that it had, at the same indices; the others come from `sources`.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,8 +5,8 @@ use super::product;
 use super::tests::{area, image, noise, on_plane, open_edges, random, square, texture};
 use super::triangle::{Corner, Cut, UNIT, Weights};
 use super::{Limits, cut_masked};
+use crate::{Filter, Scene, Wrap};
 use glam::DVec2;
-use zfail_plan::scene::{Filter, Scene, Wrap};
 
 /// A square with the alpha of its four corners.
 fn shaded(mut scene: Scene, alphas: [f32; 4]) -> Scene {
@@ -16,7 +16,7 @@ fn shaded(mut scene: Scene, alphas: [f32; 4]) -> Scene {
     scene
 }
 
-fn white(size: [u32; 2]) -> zfail_plan::scene::Image {
+fn white(size: [u32; 2]) -> crate::Image {
     image(size, |_, _| 255.0)
 }
 

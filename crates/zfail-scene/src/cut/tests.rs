@@ -7,11 +7,9 @@ use super::simplify::simplify;
 use super::trace::{generic, trace};
 use super::triangle::{Corner, Cut, UNIT, Weights, cut};
 use super::{Limits, Source, cut_masked, derive};
+use crate::{AlphaMode, Filter, Image, Instance, Material, Mesh, Primitive, Scene, Texture, TextureRef, Wrap};
 use glam::{DAffine3, DVec2, DVec3};
 use rustc_hash::FxHashMap;
-use zfail_plan::scene::{
-    AlphaMode, Filter, Image, Instance, Material, Mesh, Primitive, Scene, Texture, TextureRef, Wrap,
-};
 
 /// A number in 0..1 that only looks random.
 pub(super) fn random(seed: &mut u64) -> f64 {

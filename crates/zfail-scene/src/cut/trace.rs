@@ -9,9 +9,9 @@
 //! not interpolated has the outlines of texels for contours.
 
 use super::field::AlphaField;
+use crate::Filter;
 use glam::DVec2;
 use rustc_hash::FxHashSet;
-use zfail_plan::scene::Filter;
 
 /// A closed polygon on a plane that may repeat itself.
 #[derive(Clone, Debug)]

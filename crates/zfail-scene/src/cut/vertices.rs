@@ -4,9 +4,9 @@
 //! from.
 
 use super::triangle::{UNIT, Weights, in_order};
+use crate::Mesh;
 use glam::Vec3;
 use rustc_hash::FxHashMap;
-use zfail_plan::scene::Mesh;
 
 /// Where a vertex comes from: a point of a triangle of the mesh as it was.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -16,7 +16,7 @@ struct At<'a> {
 }
 
 /// A number per vertex, over all sections in order.
-pub(crate) fn alike(sections: &[Section]) -> Vec<u32> {
+pub fn alike(sections: &[Section]) -> Vec<u32> {
     let targets = sections.iter().map(|section| section.targets.len()).max().unwrap_or(0);
     let mut order: Vec<(At<'_>, usize)> = sections.iter().flat_map(vertices).zip(0..).collect();
     order.par_sort_unstable_by(|a, b| compare(a.0, b.0, targets).then(a.1.cmp(&b.1)));

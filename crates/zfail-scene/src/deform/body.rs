@@ -4,15 +4,15 @@
 //! origin about which they are given. Vertices along the cuts of masks stay where they are on their bent triangles.
 
 use super::Section;
+use crate::BentMesh;
 use crate::animate::MAX_COORDINATE;
 use crate::cut::{Source, extend};
 use crate::placement::localize;
 use glam::{DAffine3, DVec3};
-use zfail_plan::scene::BentMesh;
 
 /// A mesh that bends.
 #[derive(Clone, Debug)]
-pub(crate) struct Body {
+pub struct Body {
     /// Index into the scene's meshes.
     pub mesh: usize,
     /// The mesh's vertices, section after section.
@@ -21,16 +21,21 @@ pub(crate) struct Body {
     pub cuts: Vec<Source>,
     /// Morph weights at rest.
     pub weights: Vec<f64>,
+    /// What it is relative to.
     pub frame: Frame,
 }
 
 /// What a body's coordinates are relative to.
 #[derive(Clone, Debug)]
-pub(crate) enum Frame {
+pub enum Frame {
     /// The mesh's own space, less this origin.
-    Object { origin: DVec3 },
+    Object {
+        /// In the mesh's own space.
+        origin: DVec3,
+    },
     /// The world, about an origin in its midst.
     Skin {
+        /// What [`super::Influences::joints`] refers to.
         joints: Vec<Joint>,
         /// Those of the scene's that show it: they stand at the origin.
         instances: Vec<usize>,
@@ -39,11 +44,16 @@ pub(crate) enum Frame {
 
 /// A joint of a skin, as a transform from the mesh's space to the world.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Joint {
-    /// Of a node that nothing moves.
+pub enum Joint {
+    /// Of a node that nothing moves: world from mesh.
     Fixed(DAffine3),
-    /// Of a node of the rig: node from mesh, the inverse of how it was bound.
-    Moving { node: usize, node_from_mesh: DAffine3 },
+    /// Of a node of the rig.
+    Moving {
+        /// Index into the rig's nodes.
+        node: usize,
+        /// The inverse of how the mesh was bound to it.
+        node_from_mesh: DAffine3,
+    },
 }
 
 impl Joint {

@@ -8,6 +8,6 @@ mod alike;
 mod body;
 mod section;
 
-pub(crate) use alike::alike;
-pub(crate) use body::{Body, Frame, Joint};
-pub(crate) use section::{Influences, Section, Target};
+pub use alike::alike;
+pub use body::{Body, Frame, Joint};
+pub use section::{Influences, Section, Target};

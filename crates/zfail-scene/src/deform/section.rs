@@ -8,7 +8,8 @@ use rayon::prelude::*;
 
 /// Vertices before any deformation. All lists that are not empty have the length of `positions`.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Section {
+pub struct Section {
+    /// The mesh's own space, metres.
     pub positions: Vec<[f32; 3]>,
     /// Unit vectors.
     pub normals: Vec<[f32; 3]>,
@@ -16,21 +17,27 @@ pub(crate) struct Section {
     pub tangents: Vec<[f32; 4]>,
     /// Whether every three vertices are a triangle, whose normal they have in every pose.
     pub flat: bool,
+    /// By morph weight.
     pub targets: Vec<Target>,
+    /// Of a mesh with a skin.
     pub influences: Option<Influences>,
 }
 
 /// Displacements for a morph weight of 1; an empty list displaces nothing.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Target {
+pub struct Target {
+    /// Of [`Section::positions`].
     pub positions: Vec<[f32; 3]>,
+    /// Of [`Section::normals`].
     pub normals: Vec<[f32; 3]>,
+    /// Of [`Section::tangents`], without their signs.
     pub tangents: Vec<[f32; 3]>,
 }
 
 /// Which joints move each vertex: the same number for all, unused ones with weight 0. Some weight of each is above 0.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Influences {
+pub struct Influences {
+    /// How many joints a vertex has.
     pub width: usize,
     /// `width` per vertex; all exist.
     pub joints: Vec<u32>,

@@ -1,10 +1,33 @@
 use super::*;
-use crate::builtin;
-use glam::{DQuat, DVec3};
+use crate::{Instance, LightShape, Mesh};
+use glam::{DAffine3, DQuat, DVec3};
 use std::f64::consts::PI;
 
+/// Two instances, a light and a camera.
 fn scene() -> Scene {
-    builtin::animated("lantern").expect("it is built in").scene
+    let instance =
+        || Instance { name: String::new(), mesh: 0, world_from_object: DAffine3::IDENTITY, casts_shadow: true };
+    let light = Light {
+        name: "lamp".into(),
+        kind: LightKind::Point { position: DVec3::Y, range: 2.0 },
+        color: [1.0; 3],
+        intensity: 1.0,
+        excluded: Vec::new(),
+        shape: LightShape::default(),
+    };
+    let camera = Camera {
+        name: "eye".into(),
+        world_from_view: DAffine3::from_translation(DVec3::Z),
+        projection: Projection::Perspective { yfov: 1.0, near: 0.1, far: None },
+    };
+    Scene {
+        meshes: vec![Mesh::default()],
+        instances: vec![instance(), instance()],
+        lights: vec![light],
+        cameras: vec![camera],
+        ambient: [0.2; 3],
+        ..Scene::default()
+    }
 }
 
 /// With numbers that have no short decimal form.

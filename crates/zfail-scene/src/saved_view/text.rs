@@ -1,9 +1,10 @@
 //! A saved view as JSON. What JSON has no number for is `null`: a range without end.
 
 use super::{SavedView, SavedViewError, Surroundings};
+use crate::{Camera, Ground, Light, LightShape, Sky};
 use glam::{DAffine3, DMat3, DVec3};
 use serde::{Deserialize, Serialize};
-use zfail_plan::scene::{Camera, Ground, Light, LightKind, LightShape, Sky};
+use zfail_plan::light::LightKind;
 use zfail_plan::view::Projection;
 
 /// The format's number, under which the file says what it is.

@@ -6,9 +6,10 @@
 mod fly;
 mod orbit;
 
+use zfail_plan::bounds::Bounds;
 use zfail_plan::glam::{DAffine3, DMat3, DVec3};
-use zfail_plan::scene::{Bounds, Camera};
 use zfail_plan::view::Projection;
+use zfail_scene::Camera;
 
 /// What a drag does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,8 +1,8 @@
 //! Turning around a point.
 
 use super::orthonormal;
+use zfail_plan::bounds::Bounds;
 use zfail_plan::glam::{DAffine3, DMat3, DQuat, DVec3};
-use zfail_plan::scene::Bounds;
 
 /// How near to the vertical the view axis comes, radians.
 const POLE: f64 = 0.01;

@@ -5,7 +5,7 @@ use crate::action::{Action, Place};
 use crate::session::Session;
 use egui::{DragValue, Slider, Ui};
 use zfail_plan::glam::DVec3;
-use zfail_plan::scene::LightKind;
+use zfail_plan::light::LightKind;
 use zfail_scene::Sun;
 
 /// All lights.

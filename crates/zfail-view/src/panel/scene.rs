@@ -6,7 +6,6 @@ use crate::recent::{self, Recent};
 use crate::session::Session;
 use crate::stage::Stage;
 use egui::{RichText, Ui};
-use zfail_scene::builtin;
 
 /// Name of the scene, and the way to another one.
 pub fn header(ui: &mut Ui, desk: &mut Desk, stage: &Stage<'_>, recent: &Recent, actions: &mut Vec<Action>) {
@@ -45,7 +44,7 @@ fn choices(ui: &mut Ui, recent: &Recent, actions: &mut Vec<Action>) -> bool {
         }
     }
     ui.weak("Built-in scenes");
-    for entry in builtin::SCENES {
+    for entry in zfail_builtin::SCENES {
         if ui.button(entry.name).on_hover_text(entry.description).clicked() {
             actions.push(Action::Open(format!("builtin:{}", entry.name)));
         }
@@ -84,7 +83,7 @@ pub fn welcome(ui: &mut Ui, recent: &Recent, loading: Option<&str>, actions: &mu
         ui.horizontal(|ui| {
             ui.add_space((0.5 * (width - 620.0)).max(8.0));
             egui::Grid::new("built-in scenes").num_columns(2).spacing([14.0, 5.0]).show(ui, |ui| {
-                for entry in builtin::SCENES {
+                for entry in zfail_builtin::SCENES {
                     if ui.link(entry.name).clicked() {
                         actions.push(Action::Open(format!("builtin:{}", entry.name)));
                     }

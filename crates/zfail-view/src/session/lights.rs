@@ -5,7 +5,8 @@ use crate::action::Place;
 use crate::camera::radius;
 use std::mem;
 use zfail_plan::glam::DVec3;
-use zfail_plan::scene::{Light, LightKind, LightShape};
+use zfail_plan::light::LightKind;
+use zfail_scene::{Light, LightShape};
 
 /// Where a light comes from.
 #[derive(Clone, Debug, Default)]

@@ -1,7 +1,7 @@
 //! Switching what a scene stands in.
 
 use super::Session;
-use zfail_plan::scene::{Ground, Scene, Sky};
+use zfail_scene::{Ground, Scene, Sky};
 
 /// What is there when it is switched on, or when it was before.
 #[derive(Clone, Copy, Debug)]

@@ -1,17 +1,16 @@
 use super::*;
 use crate::action::Place;
 use zfail_plan::glam::DVec3;
-use zfail_plan::scene::LightKind;
-use zfail_scene::builtin;
+use zfail_plan::light::LightKind;
 
 fn session() -> Session {
-    Session::new("builtin:room".to_owned(), builtin::animated("room").expect("it is built in"), Look::default())
+    Session::new("builtin:room".to_owned(), zfail_builtin::animated("room").expect("it is built in"), Look::default())
 }
 
 #[test]
 fn the_first_view_is_that_of_the_first_camera() {
     let session = session();
-    let scene = builtin::animated("room").expect("it is built in").scene;
+    let scene = zfail_builtin::animated("room").expect("it is built in").scene;
     assert_eq!(session.view([64, 48]), scene.cameras[0].view([64, 48], &scene.bounds()));
 }
 
@@ -69,7 +68,7 @@ fn surroundings_are_switched_and_come_back() {
 
 #[test]
 fn a_camera_that_was_made_for_the_scene_follows_the_window() {
-    let mut bare = builtin::animated("anemone").expect("it is built in");
+    let mut bare = zfail_builtin::animated("anemone").expect("it is built in");
     bare.scene.cameras.clear();
     zfail_scene::Setting::default().complete(&mut bare);
     let mut session = Session::new("anemone.glb".to_owned(), bare, Look::default());

@@ -26,7 +26,7 @@ use wgpu::{
     ComputePipelineDescriptor, Device, PipelineCompilationOptions, PipelineLayoutDescriptor, Queue, RenderPass,
     ShaderStages, StorageTextureAccess, TextureFormat, TextureSampleType, TextureView, TextureViewDimension,
 };
-use zfail_plan::scene::Bounds;
+use zfail_plan::bounds::Bounds;
 use zfail_plan::scissor::{self, Rectangle};
 use zfail_plan::view::{Projection, View};
 

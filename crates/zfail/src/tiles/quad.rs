@@ -12,7 +12,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DAffine3, DMat4, DVec2, DVec3, DVec4, Mat4, Vec4};
-use zfail_plan::scene::Bounds;
+use zfail_plan::bounds::Bounds;
 use zfail_plan::scissor::Rectangle;
 
 /// The sides of one volume.
