@@ -177,7 +177,7 @@ impl Polyhedron {
 
 /// Whether a corner this high above the plane is kept; also one of which that is not known.
 fn stays(height: f64) -> bool {
-    !(height < 0.0)
+    height >= 0.0 || height.is_nan()
 }
 
 #[cfg(test)]
