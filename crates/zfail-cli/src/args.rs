@@ -15,7 +15,7 @@ pub use setting::{Sunlight, Surroundings};
 pub use view::View;
 
 use crate::numbering::Frames;
-use crate::render::{MeasureArgs, OverlayArgs};
+use crate::render::{OverlayArgs, StepArgs};
 use crate::{adapters, compare, verify};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, CommandFactory, Parser, Subcommand};
@@ -94,7 +94,7 @@ pub struct Render {
     #[arg(long, value_name = "NAME", default_value = "auto", value_parser = technique_parser())]
     pub technique: Technique,
     #[command(flatten)]
-    pub measures: MeasureArgs,
+    pub steps: StepArgs,
     /// Light everything, as if nothing cast a shadow.
     #[arg(long)]
     pub no_shadows: bool,

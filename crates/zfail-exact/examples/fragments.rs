@@ -67,8 +67,8 @@ fn list(scene: &Scene, view: &View, centre: DVec2, light: usize) -> Result<(), B
         .collect();
     let technique: Technique = env::var("ZFAIL_TECHNIQUE").map_or(Ok(Technique::EverittKilgard), |t| t.parse())?;
     let lights = [ShadowLight { kind: scene.lights[light].kind, excluded: &[] }];
-    let (measures, counting) = (technique.measures(), Counting::Raw);
-    let frame = Frame { view, casters: &casters, lights: &lights, receivers: &[], measures, counting };
+    let (steps, counting) = (technique.steps(), Counting::Raw);
+    let frame = Frame { view, casters: &casters, lights: &lights, receivers: &[], steps, counting };
     let mut planner = Planner::new();
     let plan = planner.plan(&frame)?;
 

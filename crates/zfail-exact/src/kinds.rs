@@ -86,11 +86,11 @@ impl Kind {
         let eye = DVec3::new(random.between(-3.0, 3.0), random.between(1.5, 4.0), random.between(3.5, 5.5));
         let yfov = random.between(0.6, 1.1);
         let near = 10f64.powf(random.between(-2.0, -0.7));
-        let view = View {
-            world_from_view: look(eye, random.in_cube(0.7) + DVec3::Y * 0.8),
-            projection: Projection::Perspective { yfov, near, far: None },
+        let view = View::new(
+            look(eye, random.in_cube(0.7) + DVec3::Y * 0.8),
+            Projection::Perspective { yfov, near, far: None },
             size,
-        };
+        );
         let lights = vec![point(random), point(random)];
         let mut recipe = Recipe { kind: self, seed, parts: stage(random), lights, view };
         self.furnish(&mut recipe, random);

@@ -53,11 +53,11 @@ fn scene(surface: Material, count: usize) -> Scene {
 }
 
 fn view() -> View {
-    View {
-        world_from_view: DAffine3 { matrix3: DMat3::IDENTITY, translation: DVec3::new(0.0, 0.0, 5.0) },
-        projection: Projection::Perspective { yfov: 0.9, near: 0.1, far: None },
-        size: SIZE,
-    }
+    View::new(
+        DAffine3 { matrix3: DMat3::IDENTITY, translation: DVec3::new(0.0, 0.0, 5.0) },
+        Projection::Perspective { yfov: 0.9, near: 0.1, far: None },
+        SIZE,
+    )
 }
 
 fn settings() -> Settings {

@@ -52,7 +52,7 @@ pub fn compose(model: &mut Model, plans: &mut Plans, paper: &Paper<'_>) -> Resul
         paper::label(drawing, &camera, DVec4::new(0.0, y, z, 1.0), name);
     };
     label(&mut drawing, -1.15, half.z, &format!("near plane, {near:.3} m"));
-    label(&mut drawing, 1.15, -half.z, if view.is_finite() { "far plane" } else { "far plane, at infinity" });
+    label(&mut drawing, 1.15, -half.z, if view.has_far_plane() { "far plane" } else { "far plane, at infinity" });
     Ok(drawing)
 }
 

@@ -82,7 +82,7 @@ mod tests {
 
     fn region() -> Region {
         let projection = Projection::Perspective { yfov: std::f64::consts::FRAC_PI_2, near: 1.0, far: None };
-        let view = View { world_from_view: DAffine3::IDENTITY, projection, size: [10, 10] };
+        let view = View::new(DAffine3::IDENTITY, projection, [10, 10]);
         Region::frustum(&view.clip_from_relative())
     }
 

@@ -10,7 +10,7 @@ use std::sync::OnceLock;
 use zfail_plan::bounds::Bounds;
 use zfail_plan::glam::{DAffine3, DMat4, DVec3, DVec4};
 use zfail_plan::plan::Caster;
-use zfail_plan::topology::{Surface, Topology};
+use zfail_plan::topology::{Blocking, Topology};
 use zfail_plan::view::View;
 use zfail_scene::{Ground, Instance, Light, Mesh, Pose, Scene};
 
@@ -37,7 +37,7 @@ pub struct MeshModel {
     /// Positions and triangles; nothing else is kept.
     pub mesh: Mesh,
     pub faces: Vec<Face>,
-    surfaces: Vec<Surface>,
+    blocking: Vec<Blocking>,
     /// Made when the first volume is needed: proofs about solids take their time.
     topology: Option<Topology>,
     /// Made when they are first asked for.
@@ -217,7 +217,7 @@ impl MeshModel {
         }
         let (positions, triangles) = (mesh.positions.clone(), mesh.triangles.clone());
         Self {
-            surfaces: (0..triangles.len()).map(|t| scene.triangle_surface(m, t)).collect(),
+            blocking: (0..triangles.len()).map(|t| scene.triangle_blocking(m, t)).collect(),
             mesh: Mesh { name: mesh.name.clone(), positions, triangles, alike: mesh.alike.clone(), ..Mesh::default() },
             faces,
             topology: None,
@@ -242,7 +242,7 @@ impl MeshModel {
 
     fn weld(&self) -> Result<Topology, zfail_plan::topology::TopologyError> {
         let Mesh { positions, triangles, alike, .. } = &self.mesh;
-        let surface = |t: usize| self.surfaces[t];
+        let surface = |t: usize| self.blocking[t];
         match self.mesh.bends() {
             false => Topology::new(positions, triangles, surface),
             true => Topology::bending(positions, triangles, alike, surface),

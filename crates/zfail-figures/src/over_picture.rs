@@ -32,7 +32,7 @@ impl Picture<'_> {
 pub fn compose(model: &mut Model, plans: &mut Plans, picture: &Picture<'_>) -> Result<Drawing, Error> {
     use Overlay::{Cases, Scissors, Silhouettes, Stencil, Volumes, VolumesByLight, Wireframe};
     let view = picture.view;
-    let mut drawing = Drawing::new(model.clip_from_anchored(view), view.is_finite(), Surfaces::Scene);
+    let mut drawing = Drawing::new(model.clip_from_anchored(view), view.has_far_plane(), Surfaces::Scene);
     let width = line_width(view.size);
     if picture.shows(&[Stencil])
         && let Some(&light) = picture.lights.first()

@@ -6,7 +6,7 @@ use crate::Error;
 use crate::model::Model;
 use crate::volumes::{self, Triangle};
 use zfail_plan::glam::DVec4;
-use zfail_plan::plan::{Counting, Frame, FramePlan, Measures, Planner, ShadowLight, Silhouettes, Technique};
+use zfail_plan::plan::{Counting, Frame, FramePlan, Planner, ShadowLight, Silhouettes, Steps, Technique};
 use zfail_plan::view::{Projection, View};
 
 /// Two planners, so that each finds its last frame as it left it.
@@ -26,14 +26,14 @@ impl Plans {
         technique: Technique,
     ) -> Result<&FramePlan, Error> {
         // Figures need the lists, so no silhouette is left to a device.
-        let measures = Measures { silhouettes: Silhouettes::Cpu, ..technique.measures() };
-        plan(&mut self.technique, model, view, lights, measures, Counting::Verdict)
+        let steps = Steps { silhouettes: Silhouettes::Cpu, ..technique.steps() };
+        plan(&mut self.technique, model, view, lights, steps, Counting::Verdict)
     }
 
     /// Whole volumes of all casters, nothing culled, closed at infinity by the extruded light cap (E&K 2002).
     pub fn whole(&mut self, model: &mut Model, view: &View, lights: &[usize]) -> Result<Whole, Error> {
-        let measures = Technique::EverittKilgard.measures();
-        let plan = plan(&mut self.whole, model, view, lights, measures, Counting::Raw)?;
+        let steps = Technique::EverittKilgard.steps();
+        let plan = plan(&mut self.whole, model, view, lights, steps, Counting::Raw)?;
         let finite = matches!(view.projection, Projection::Orthographic { .. });
         Ok(Whole { triangles: volumes::triangles(plan, model), silhouettes: volumes::silhouettes(plan, model, finite) })
     }
@@ -51,7 +51,7 @@ fn plan<'p>(
     model: &mut Model,
     view: &View,
     lights: &[usize],
-    measures: Measures,
+    steps: Steps,
     counting: Counting,
 ) -> Result<&'p FramePlan, Error> {
     model.make_topologies()?;
@@ -62,6 +62,6 @@ fn plan<'p>(
         .map(|(&l, excluded)| ShadowLight { kind: model.lights[l].kind, excluded })
         .collect();
     let receivers = &model.receivers(view);
-    let frame = Frame { view, casters: &model.casters(), lights: &lights, receivers, measures, counting };
+    let frame = Frame { view, casters: &model.casters(), lights: &lights, receivers, steps, counting };
     Ok(planner.plan(&frame)?)
 }

@@ -45,11 +45,11 @@ pub fn view() -> View {
     let eye = DVec3::new(1e5, 3.0, 6.0);
     let back = DVec3::new(0.0, 0.3, 1.0).normalize();
     let right = DVec3::Y.cross(back).normalize();
-    View {
-        world_from_view: DAffine3 { matrix3: DMat3::from_cols(right, back.cross(right), back), translation: eye },
-        projection: Projection::Perspective { yfov: 0.8, near: 0.1, far: None },
-        size: [128, 96],
-    }
+    View::new(
+        DAffine3 { matrix3: DMat3::from_cols(right, back.cross(right), back), translation: eye },
+        Projection::Perspective { yfov: 0.8, near: 0.1, far: None },
+        [128, 96],
+    )
 }
 
 pub fn paper<'a>(view: &'a View, overlays: &'a [Overlay]) -> Paper<'a> {

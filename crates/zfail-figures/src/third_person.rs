@@ -48,7 +48,7 @@ impl Camera {
         let distance = points.iter().map(needed).fold(0.05 * extent, f64::max);
         let position = basis * (center + DVec3::Z * distance);
         let projection = Projection::Perspective { yfov: FOV, near: 0.01 * distance, far: None };
-        let view = View { world_from_view: DAffine3 { matrix3: basis, translation: position }, projection, size };
+        let view = View::new(DAffine3 { matrix3: basis, translation: position }, projection, size);
         let clip_from_origin = view.clip_from_relative() * DMat4::from_translation(-position);
         Self { clip_from_origin, position, size }
     }

@@ -5,10 +5,10 @@
 //! sphere of this radius and sets the OpenGL scissor region to that bounding box" (McG). Whether the viewport is shadowed is
 //! asked of each light once: does any of its casters come between it and the near rectangle? (E&K 3.4 suggests that.)
 
-use zfail_plan::plan::{Measures, Silhouettes, Tiles, ZPass};
+use zfail_plan::plan::{Silhouettes, Steps, Tiles, ZPass};
 
 /// The steps that make the method.
-pub const MEASURES: Measures = Measures {
+pub const MEASURES: Steps = Steps {
     reach: true,
     z_pass: ZPass::ByLight,
     off_screen: false,

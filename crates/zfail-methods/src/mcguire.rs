@@ -7,7 +7,7 @@
 //! DrawDarkCap). That is closed only where the light is outside of the caster's hull, which the planner asks first.
 
 use crate::lengyel;
-use zfail_plan::plan::{Measures, ZPass};
+use zfail_plan::plan::{Steps, ZPass};
 
 /// The steps that make the method.
-pub const MEASURES: Measures = Measures { z_pass: ZPass::ByCaster, off_screen: true, fan: true, ..lengyel::MEASURES };
+pub const MEASURES: Steps = Steps { z_pass: ZPass::ByCaster, off_screen: true, fan: true, ..lengyel::MEASURES };

@@ -90,7 +90,7 @@ impl<'g> Methods<'g> {
         if method == Method::ShadowMap {
             return shadow_map::shadow(gpu, stage, geometry, view, light, &options.shadow_map);
         }
-        let mut planned = |measures| planned::shadow(gpu, stage, geometry, view, light, measures);
+        let mut planned = |steps| planned::shadow(gpu, stage, geometry, view, light, steps);
         match method {
             Method::Lengyel => return planned(lengyel::MEASURES),
             Method::Mcguire => return planned(mcguire::MEASURES),

@@ -10,10 +10,10 @@
 //! silhouettes found on the device belong to it too, but depend on the device's measured times and are not taken here.
 
 use crate::mcguire;
-use zfail_plan::plan::Measures;
+use zfail_plan::plan::Steps;
 
 /// The steps that make the method.
-pub const MEASURES: Measures = Measures { receivers: true, occluders: 8, near_count: true, ..mcguire::MEASURES };
+pub const MEASURES: Steps = Steps { receivers: true, occluders: 8, near_count: true, ..mcguire::MEASURES };
 
 #[cfg(test)]
 mod tests {
@@ -23,11 +23,8 @@ mod tests {
 
     #[test]
     fn the_steps_are_those_of_the_techniques() {
-        let cpu = |technique: Technique| Measures {
-            tiles: Tiles::Never,
-            silhouettes: Silhouettes::Cpu,
-            ..technique.measures()
-        };
+        let cpu =
+            |technique: Technique| Steps { tiles: Tiles::Never, silhouettes: Silhouettes::Cpu, ..technique.steps() };
         assert_eq!(lengyel::MEASURES, cpu(Technique::Lengyel));
         assert_eq!(mcguire::MEASURES, cpu(Technique::Mcguire));
         assert_eq!(MEASURES, cpu(Technique::Auto));

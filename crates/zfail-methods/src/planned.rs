@@ -1,6 +1,6 @@
 //! Methods that choose what to draw: carried out by the library itself, of which this is a small host.
 //!
-//! In: the steps to take ([`Measures`]). Out: the mask and figures. The stage has the depth pass and the verdict, and
+//! In: the steps to take ([`Steps`]). Out: the mask and figures. The stage has the depth pass and the verdict, and
 //! [`Shadows`] counts in between; the instrumented run draws what its plan draws.
 
 use crate::geometry::{Geometry, Mesh};
@@ -9,7 +9,7 @@ use crate::volumes::{Draw, Volumes};
 use crate::{Error, Figures};
 use std::time::Instant;
 use zfail_plan::glam::{DAffine3, Vec3};
-use zfail_plan::plan::{self, Counting, FramePlan, Measures, ShadowLight};
+use zfail_plan::plan::{self, Counting, FramePlan, ShadowLight, Steps};
 use zfail_plan::view::View;
 use zfail_render::Gpu;
 use zfail_render::zfail::{Caster, Frame, Shadows, Target};
@@ -22,7 +22,7 @@ pub fn shadow(
     geometry: &Geometry,
     view: &View,
     light: &Light,
-    measures: Measures,
+    steps: Steps,
 ) -> Result<(Vec<u8>, Figures), Error> {
     let mut shadows = Shadows::new(&gpu.device);
     let mut meshes = vec![None; geometry.meshes.len()];
@@ -43,7 +43,7 @@ pub fn shadow(
     let lights = &[ShadowLight { kind: light.kind, excluded: &[] }];
     let receivers = &[geometry.bounds];
     let counting = Counting::Verdict;
-    let frame = Frame { view, casters: &casters, lights, receivers, measures, counting };
+    let frame = Frame { view, casters: &casters, lights, receivers, steps, counting };
     shadows.prepare(&gpu.device, &gpu.queue, &frame)?;
     let planning_ms = start.elapsed().as_secs_f64() * 1e3;
 

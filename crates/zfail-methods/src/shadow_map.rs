@@ -147,7 +147,7 @@ impl Maps {
                 let ymag = half.x.max(half.y);
                 let projection = Projection::Orthographic { ymag, near: -half.z, far: half.z };
                 let world_from_view = DAffine3 { matrix3: axes, translation: center };
-                let faces = vec![View { world_from_view, projection, size }];
+                let faces = vec![View::new(world_from_view, projection, size)];
                 return Self { faces, near: 0.0, range: 2.0 * half.z, texel: 2.0 * ymag / texels };
             }
         };
@@ -155,10 +155,12 @@ impl Maps {
         let end = if bounds.is_empty() { range } else { range.min(farthest) };
         let end = if end.is_finite() && end > 0.0 { end } else { 1.0 };
         let near = NEAR * end;
-        let face = |direction: DVec3, half_angle: f64| View {
-            world_from_view: DAffine3 { matrix3: facing(direction), translation: position },
-            projection: Projection::Perspective { yfov: 2.0 * half_angle, near, far: None },
-            size,
+        let face = |direction: DVec3, half_angle: f64| {
+            View::new(
+                DAffine3 { matrix3: facing(direction), translation: position },
+                Projection::Perspective { yfov: 2.0 * half_angle, near, far: None },
+                size,
+            )
         };
         let axes = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
         let (faces, half_angle) = match cone {

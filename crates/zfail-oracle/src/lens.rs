@@ -15,9 +15,10 @@ pub(crate) struct Lens {
     right: DVec3,
     up: DVec3,
     forward: DVec3,
-    /// Pixels to the view plane at depth 1, or to the world if orthographic.
-    pixel: f64,
-    size: [u32; 2],
+    /// Pixels to the view plane at depth 1, or to the world if orthographic: across and down.
+    pixel: [f64; 2],
+    /// Where the view axis meets the image, in pixels from its upper left corner.
+    middle: [f64; 2],
     orthographic: bool,
     /// Visible depths.
     pub depths: [f64; 2],
@@ -42,13 +43,15 @@ impl Lens {
             Projection::Perspective { far, .. } => far.unwrap_or(f64::INFINITY),
             Projection::Orthographic { far, .. } => far,
         };
+        let [width, height] = view.size.map(f64::from);
+        let pixel = 2.0 * half_height / height;
         Self {
             eye: view.world_from_view.translation - origin,
             right: axes.x_axis,
             up: axes.y_axis,
             forward: -axes.z_axis,
-            pixel: 2.0 * half_height / f64::from(view.size[1]),
-            size: view.size,
+            pixel: [pixel / view.window.scale.x, pixel / view.window.scale.y],
+            middle: [0.5 * width * (1.0 + view.window.offset.x), 0.5 * height * (1.0 - view.window.offset.y)],
             orthographic,
             depths: [view.near(), far],
         }
@@ -56,9 +59,8 @@ impl Lens {
 
     /// The ray through `(x, y)`, in pixels from the upper left corner of the image.
     pub fn ray(&self, x: f64, y: f64) -> Ray {
-        let [width, height] = self.size.map(f64::from);
         let [right, down] = self.per_pixel();
-        let aside = right * (x - 0.5 * width) + down * (y - 0.5 * height);
+        let aside = right * (x - self.middle[0]) + down * (y - self.middle[1]);
         match self.orthographic {
             false => Ray { origin: self.eye, direction: self.forward + aside },
             true => Ray { origin: self.eye + aside, direction: self.forward },
@@ -67,7 +69,7 @@ impl Lens {
 
     /// Change of a ray's [`Lens::aim`] per pixel to the right and down.
     pub fn per_pixel(&self) -> [DVec3; 2] {
-        [self.right * self.pixel, -self.up * self.pixel]
+        [self.right * self.pixel[0], -self.up * self.pixel[1]]
     }
 
     /// Tip of the cone of all rays.
@@ -95,9 +97,9 @@ impl Lens {
         if self.orthographic { 0.0 } else { 1.0 }
     }
 
-    /// Length that one pixel covers at `depth`.
+    /// The greater length that one pixel covers at `depth`.
     pub fn pixel_at(&self, depth: f64) -> f64 {
-        self.pixel * self.spread(depth)
+        self.pixel[0].max(self.pixel[1]) * self.spread(depth)
     }
 
     /// `kappa` units in the last place of a 24-bit depth buffer, as a difference of depth.
@@ -125,7 +127,7 @@ mod tests {
         let perspective = Projection::Perspective { yfov: 0.9, near: 0.1, far: None };
         let orthographic = Projection::Orthographic { ymag: 2.5, near: -1.0, far: 9.0 };
         for projection in [perspective, orthographic] {
-            let view = View { world_from_view, projection, size: [320, 180] };
+            let view = View::new(world_from_view, projection, [320, 180]);
             let lens = Lens::new(&view, DVec3::new(1.0, 2.0, 3.0));
             for (x, y) in [(0.5, 0.5), (319.5, 0.5), (100.25, 150.0)] {
                 let ray = lens.ray(x, y);

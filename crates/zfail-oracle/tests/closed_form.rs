@@ -15,7 +15,7 @@ const SIZE: [u32; 2] = [200, 200];
 fn from_above() -> View {
     let down = DAffine3::from_translation(DVec3::new(0.0, 9.0, 0.0));
     let world_from_view = down * DAffine3::from_rotation_x(-std::f64::consts::FRAC_PI_2);
-    View { world_from_view, projection: Projection::Orthographic { ymag: 4.0, near: 8.0, far: 20.0 }, size: SIZE }
+    View::new(world_from_view, Projection::Orthographic { ymag: 4.0, near: 8.0, far: 20.0 }, SIZE)
 }
 
 fn judge(scene: &Scene) -> Truth {

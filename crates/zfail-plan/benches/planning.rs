@@ -55,7 +55,7 @@ fn plan(c: &mut Criterion) {
     let mut group = c.benchmark_group("plan");
     group.sample_size(20);
     let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
-    let view = View { world_from_view: DAffine3::IDENTITY, projection, size: [1280, 720] };
+    let view = View::new(DAffine3::IDENTITY, projection, [1280, 720]);
     let (positions, triangles) = shapes::torus(100, 50, 0.4);
     let topology = Topology::new(&positions, &triangles, |_| true).expect("valid mesh");
     for (name, moving) in [("still", false), ("moving light", true)] {
@@ -77,7 +77,7 @@ fn plan(c: &mut Criterion) {
                     casters: &casters,
                     lights: &lights,
                     receivers: &[],
-                    measures: Technique::Auto.into(),
+                    steps: Technique::Auto.into(),
                     counting: Counting::Verdict,
                 };
                 planner.plan(&frame).map(|plan| plan.draws.len()).expect("plan")

@@ -4,7 +4,7 @@
 //! (Lengyel 2002; McGuire et al. 2003, section 6, `projectBoundsAgainstViewport`, with clipping at the near plane).
 
 use crate::view::{Projection, View};
-use glam::{DVec3, DVec4};
+use glam::{DVec2, DVec3, DVec4};
 
 /// A pixel rectangle: x, y of the upper left pixel, width, height.
 pub type Rectangle = [u32; 4];
@@ -88,12 +88,13 @@ pub fn of_ball(view: &View, center: DVec3, radius: f64) -> Option<Rectangle> {
     if depth + radius <= near {
         return None;
     }
+    let windowed = |[x, y]: [f64; 2]| (view.window.scale * DVec2::new(x, y) + view.window.offset).to_array();
     let mut extent = Extent::EMPTY;
     match view.projection {
         Projection::Orthographic { ymag, .. } => {
             let xmag = ymag * view.aspect();
             for sign in [-1.0, 1.0] {
-                extent.add_ndc([(at.x + sign * radius) / xmag, (at.y + sign * radius) / ymag]);
+                extent.add_ndc(windowed([(at.x + sign * radius) / xmag, (at.y + sign * radius) / ymag]));
             }
         }
         Projection::Perspective { yfov, .. } => {
@@ -101,7 +102,7 @@ pub fn of_ball(view: &View, center: DVec3, radius: f64) -> Option<Rectangle> {
             let scale = [scale_y / view.aspect(), scale_y];
             let [across, up] = [at.x, at.y].map(|offset| tangents(offset, depth, radius, near));
             for (x, y) in across.into_iter().zip(up) {
-                extent.add_ndc([x * scale[0], y * scale[1]]);
+                extent.add_ndc(windowed([x * scale[0], y * scale[1]]));
             }
         }
     }
@@ -183,7 +184,7 @@ mod tests {
 
     fn view() -> View {
         let projection = Projection::Perspective { yfov: std::f64::consts::FRAC_PI_2, near: 0.1, far: None };
-        View { world_from_view: DAffine3::IDENTITY, projection, size: [200, 100] }
+        View::new(DAffine3::IDENTITY, projection, [200, 100])
     }
 
     fn of(points: &[DVec3]) -> Option<Rectangle> {

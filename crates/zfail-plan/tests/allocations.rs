@@ -14,7 +14,7 @@ fn plan(planner: &mut Planner, casters: &[Caster<'_>], k: u32, moving: bool) {
     let turn = f64::from(k) * 0.05;
     let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
     let place = DAffine3::from_rotation_y(turn) * DAffine3::from_translation(DVec3::new(0.0, 1.0, 12.0));
-    let view = View { world_from_view: place, projection, size: [640, 360] };
+    let view = View::new(place, projection, [640, 360]);
     let position = DVec3::new(if moving { turn.sin() } else { 0.0 }, 7.0, 0.3);
     let lights = [
         ShadowLight { kind: LightKind::Point { position, range: 40.0 }, excluded: &[0] },
@@ -26,7 +26,7 @@ fn plan(planner: &mut Planner, casters: &[Caster<'_>], k: u32, moving: bool) {
         casters,
         lights: &lights,
         receivers: &receivers,
-        measures: Technique::Auto.into(),
+        steps: Technique::Auto.into(),
         counting: Counting::Verdict,
     };
     assert!(!planner.plan(&frame).expect("plan").draws.is_empty());

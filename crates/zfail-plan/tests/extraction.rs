@@ -5,16 +5,16 @@ mod shapes;
 use glam::{DAffine3, DVec3};
 use shapes::Soup;
 use zfail_plan::light::LightKind;
-use zfail_plan::plan::{Caster, Counting, Frame, FramePlan, Measures, Planner, ShadowLight, Silhouettes, Technique};
+use zfail_plan::plan::{Caster, Counting, Frame, FramePlan, Planner, ShadowLight, Silhouettes, Steps, Technique};
 use zfail_plan::topology::Topology;
 use zfail_plan::view::{Projection, View};
 
 fn eye() -> View {
-    View {
-        world_from_view: DAffine3::from_translation(DVec3::new(0.0, 0.5, 4.0)),
-        projection: Projection::Perspective { yfov: 1.0, near: 0.1, far: None },
-        size: [64, 64],
-    }
+    View::new(
+        DAffine3::from_translation(DVec3::new(0.0, 0.5, 4.0)),
+        Projection::Perspective { yfov: 1.0, near: 0.1, far: None },
+        [64, 64],
+    )
 }
 
 fn topology(soup: &Soup) -> Topology {
@@ -44,9 +44,8 @@ fn plan<'p>(
     };
     let casters: Vec<Caster<'_>> = topologies.iter().enumerate().map(place).collect();
     let lights = [ShadowLight { kind: LightKind::Point { position: light, range: f64::INFINITY }, excluded: &[] }];
-    let measures = Measures { silhouettes, off_screen: false, ..Technique::Mcguire.measures() };
-    let frame =
-        Frame { view, casters: &casters, lights: &lights, receivers: &[], measures, counting: Counting::Verdict };
+    let steps = Steps { silhouettes, off_screen: false, ..Technique::Mcguire.steps() };
+    let frame = Frame { view, casters: &casters, lights: &lights, receivers: &[], steps, counting: Counting::Verdict };
     planner.plan_extracting(&frame, &vec![true; casters.len()]).unwrap()
 }
 

@@ -90,14 +90,14 @@ fn plan(meshes: &[Topology], light: LightKind, counting: Counting) -> FramePlan 
         })
         .collect();
     let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
-    let view = View { world_from_view: DAffine3::IDENTITY, projection, size: [64, 64] };
+    let view = View::new(DAffine3::IDENTITY, projection, [64, 64]);
     let lights = [ShadowLight { kind: light, excluded: &[] }];
     let frame = Frame {
         view: &view,
         casters: &casters,
         lights: &lights,
         receivers: &[],
-        measures: Technique::Auto.into(),
+        steps: Technique::Auto.into(),
         counting,
     };
     let mut planner = Planner::new();
@@ -148,9 +148,9 @@ fn a_change_of_projection_keeps_deep_stacks_divided() {
         Projection::Orthographic { ymag: 1.0, near: 0.1, far: 9.0 },
         Projection::Perspective { yfov: 1.0, near: 0.1, far: None },
     ] {
-        let view = View { world_from_view: DAffine3::IDENTITY, projection, size: [64, 64] };
-        let (measures, counting) = (Technique::Auto.into(), Counting::Verdict);
-        let frame = Frame { view: &view, casters: &casters, lights: &lights, receivers: &[], measures, counting };
+        let view = View::new(DAffine3::IDENTITY, projection, [64, 64]);
+        let (steps, counting) = (Technique::Auto.into(), Counting::Verdict);
+        let frame = Frame { view: &view, casters: &casters, lights: &lights, receivers: &[], steps, counting };
         let batches = planner.plan(&frame).unwrap().lights[0].batches.len();
         assert!(batches >= 1000 / 120, "{projection:?}: {batches}");
     }
@@ -170,12 +170,12 @@ fn a_change_in_the_number_of_lights_keeps_deep_stacks_divided() {
     let casters = [Caster { topology: &topology, mesh: 1, world_from_object: DAffine3::IDENTITY }];
     let lights = [ShadowLight { kind: lamp(), excluded: &[] }, ShadowLight { kind: sun(), excluded: &[] }];
     let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
-    let view = View { world_from_view: DAffine3::IDENTITY, projection, size: [64, 64] };
+    let view = View::new(DAffine3::IDENTITY, projection, [64, 64]);
     let mut planner = Planner::new();
     for count in [1, 2, 1] {
         let (lights, counting) = (&lights[..count], Counting::Verdict);
-        let measures = Technique::EverittKilgard.into();
-        let frame = Frame { view: &view, casters: &casters, lights, receivers: &[], measures, counting };
+        let steps = Technique::EverittKilgard.into();
+        let frame = Frame { view: &view, casters: &casters, lights, receivers: &[], steps, counting };
         let batches = planner.plan(&frame).unwrap().lights[0].batches.len();
         assert!(batches >= 1000 / 120, "{count} lights: {batches}");
     }
@@ -216,10 +216,10 @@ fn batches_of_rings(count: u32, step: DVec3, light: LightKind) -> usize {
         .collect();
     let world_from_view = DAffine3::from_translation(DVec3::new(0.0, 40.0, 90.0));
     let projection = Projection::Perspective { yfov: 1.5, near: 0.1, far: None };
-    let view = View { world_from_view, projection, size: [64, 64] };
+    let view = View::new(world_from_view, projection, [64, 64]);
     let lights = [ShadowLight { kind: light, excluded: &[] }];
-    let (measures, counting) = (Technique::EverittKilgard.into(), Counting::Verdict);
-    let frame = Frame { view: &view, casters: &casters, lights: &lights, receivers: &[], measures, counting };
+    let (steps, counting) = (Technique::EverittKilgard.into(), Counting::Verdict);
+    let frame = Frame { view: &view, casters: &casters, lights: &lights, receivers: &[], steps, counting };
     Planner::new().plan(&frame).unwrap().lights[0].batches.len()
 }
 

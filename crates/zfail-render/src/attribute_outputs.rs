@@ -70,8 +70,8 @@ fn positions(depth: &[f32], view: &View) -> Vec<[f32; 3]> {
             let y = (i / view.size[0] as usize) as f64 + 0.5;
             let spread = if matches!(view.projection, Projection::Perspective { .. }) { depth } else { 1.0 };
             let on_plane = DVec3::new(
-                (2.0 * x / size[0] - 1.0) * per_ndc[0] * spread,
-                (1.0 - 2.0 * y / size[1]) * per_ndc[1] * spread,
+                (2.0 * x / size[0] - 1.0 - view.window.offset.x) * per_ndc[0] * spread,
+                (1.0 - 2.0 * y / size[1] - view.window.offset.y) * per_ndc[1] * spread,
                 -depth,
             );
             view.world_from_view.transform_point3(on_plane).as_vec3().to_array()

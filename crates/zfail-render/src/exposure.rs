@@ -9,7 +9,7 @@ const BINS: u64 = 1024;
 /// Pixels along a side of a workgroup, as in `meter.wgsl`.
 const TILE: u32 = 16;
 
-/// Measures the picture and holds the exposure.
+/// Steps the picture and holds the exposure.
 #[derive(Debug)]
 pub struct ExposureMeter {
     layout: wgpu::BindGroupLayout,

@@ -98,6 +98,8 @@ impl FrameData {
             per_ground_radius: shading.ground.map_or(0.0, |ground| ground.radius.recip() as f32),
             ground: view.view_from_object(&DAffine3::from_translation(middle)).translation.as_vec3().to_array(),
             pad: 0,
+            window_offset: view.window.offset.as_vec2().to_array(),
+            pad_to_lights: [0; 2],
             lights: first,
         };
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));

@@ -26,6 +26,8 @@ pub struct FrameUniform {
     pub per_ground_radius: f32,
     pub ground: [f32; 3],
     pub pad: u32,
+    pub window_offset: [f32; 2],
+    pub pad_to_lights: [u32; 2],
     pub lights: [LightRecord; UNROLLED],
 }
 

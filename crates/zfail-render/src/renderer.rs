@@ -365,7 +365,7 @@ mod tests {
         };
         let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
         let world_from_view = DAffine3::from_translation(DVec3::new(0.0, 0.0, 2.5));
-        let view = View { world_from_view, projection, size: [64, 64] };
+        let view = View::new(world_from_view, projection, [64, 64]);
         let direct = |renderer: &mut Renderer<'_>, settings: &Settings| {
             renderer.draw(&view, settings, Finish::Forward).expect("a frame");
             read_back::texture(&gpu, &renderer.targets.as_ref().expect("targets").ldr).expect("texels")

@@ -239,20 +239,20 @@ impl SceneOnGpu {
             .collect();
         let lights: Vec<ShadowLight<'_>> =
             chosen.iter().zip(&excluded).map(|(&(_, kind), excluded)| ShadowLight { kind, excluded }).collect();
-        let measures = settings.measures();
+        let steps = settings.steps();
         let boxes = [self.bounds, ground.unwrap_or(Bounds::EMPTY)];
         let receivers = if ground.is_some() { &boxes[..] } else { &boxes[..1] };
-        if self.posed && measures.silhouettes == Silhouettes::WhereCheaper {
+        if self.posed && steps.silhouettes == Silhouettes::WhereCheaper {
             self.shadows.set_cost_model(gpu.costs());
         }
-        let frame = Frame { view, casters: &self.casters, lights: &lights, receivers, measures, counting };
+        let frame = Frame { view, casters: &self.casters, lights: &lights, receivers, steps, counting };
         self.shadows.prepare(&gpu.device, &gpu.queue, &frame)?;
         Ok((0..chosen.len()).map(|light| self.shadows.stats(light)).collect())
     }
 
     /// Chooses what of the planned frame is counted by tiles.
     pub fn plan_tiles(&mut self, gpu: &Gpu, settings: &Settings) -> Result<(), RenderError> {
-        if settings.measures().tiles == Tiles::WhereCheaper {
+        if settings.steps().tiles == Tiles::WhereCheaper {
             self.shadows.set_cost_model(gpu.costs());
         }
         self.shadows.prepare_tiles(&gpu.device, &gpu.queue)?;

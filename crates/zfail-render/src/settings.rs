@@ -1,6 +1,6 @@
 //! How a frame is rendered: the caller's choices, apart from scene and view.
 
-use zfail::{Measures, Silhouettes, Technique, Tiles};
+use zfail::{Silhouettes, Steps, Technique, Tiles};
 
 /// Choices for one frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,12 +47,12 @@ impl Settings {
     }
 
     /// The steps that the technique takes under these settings.
-    pub(crate) fn measures(&self) -> Measures {
-        let measures = self.technique.measures();
-        Measures {
-            tiles: if measures.tiles == Tiles::Never { Tiles::Never } else { self.tiles },
-            silhouettes: if measures.silhouettes == Silhouettes::Cpu { Silhouettes::Cpu } else { self.silhouettes },
-            ..measures
+    pub(crate) fn steps(&self) -> Steps {
+        let steps = self.technique.steps();
+        Steps {
+            tiles: if steps.tiles == Tiles::Never { Tiles::Never } else { self.tiles },
+            silhouettes: if steps.silhouettes == Silhouettes::Cpu { Silhouettes::Cpu } else { self.silhouettes },
+            ..steps
         }
     }
 }

@@ -217,6 +217,7 @@ mod tests {
                 nadir,
                 per_ground_radius,
                 ground,
+                window_offset,
                 lights
             ]
         );

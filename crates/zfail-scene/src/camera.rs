@@ -34,6 +34,6 @@ impl Camera {
                 Projection::Orthographic { ymag, near, far }
             }
         };
-        View { world_from_view: self.world_from_view, projection, size }
+        View::new(self.world_from_view, projection, size)
     }
 }

@@ -15,7 +15,7 @@ impl Scene {
     /// # Panics
     /// If there is no such mesh.
     pub fn topology(&self, mesh: usize) -> Result<Topology, TopologyError> {
-        let surface = |t| self.triangle_surface(mesh, t);
+        let surface = |t| self.triangle_blocking(mesh, t);
         let mesh = &self.meshes[mesh];
         match mesh.bends() {
             false => Topology::new(&mesh.positions, &mesh.triangles, surface),

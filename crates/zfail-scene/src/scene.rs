@@ -5,7 +5,7 @@
 use crate::{AlphaMode, Camera, Ground, Image, Light, MaskCasting, Material, Mesh, Sky, Texture};
 use glam::{DAffine3, DVec3};
 use zfail_plan::bounds::Bounds;
-use zfail_plan::topology::Surface;
+use zfail_plan::topology::Blocking;
 
 /// A posed scene: one moment of it, everything in world space.
 #[derive(Clone, Debug, Default)]
@@ -90,23 +90,23 @@ impl Scene {
     /// [`Scene::blended_casts`], and masked ones where [`Scene::mask_casting`] says so.
     #[must_use]
     pub fn triangle_casts(&self, mesh: usize, triangle: usize) -> bool {
-        self.triangle_surface(mesh, triangle) != Surface::Through
+        self.triangle_blocking(mesh, triangle) != Blocking::Nothing
     }
 
     /// What triangle `triangle` of mesh `mesh` is to light and to the depth buffer.
     #[must_use]
-    pub fn triangle_surface(&self, mesh: usize, triangle: usize) -> Surface {
+    pub fn triangle_blocking(&self, mesh: usize, triangle: usize) -> Blocking {
         let Some(material) = self.meshes[mesh].material_of(triangle).map(|m| &self.materials[m]) else {
-            return Surface::Front;
+            return Blocking::Front;
         };
         match material.alpha {
             // No depth pass draws it.
-            _ if material.is_blended() && self.blended_casts => Surface::Partly,
-            _ if material.is_blended() => Surface::Through,
-            AlphaMode::Mask(_) if self.mask_casting == MaskCasting::Off => Surface::Through,
-            AlphaMode::Mask(_) => Surface::Partly,
-            _ if material.double_sided => Surface::BothSides,
-            _ => Surface::Front,
+            _ if material.is_blended() && self.blended_casts => Blocking::Partly,
+            _ if material.is_blended() => Blocking::Nothing,
+            AlphaMode::Mask(_) if self.mask_casting == MaskCasting::Off => Blocking::Nothing,
+            AlphaMode::Mask(_) => Blocking::Partly,
+            _ if material.double_sided => Blocking::BothSides,
+            _ => Blocking::Front,
         }
     }
 }

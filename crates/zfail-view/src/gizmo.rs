@@ -155,7 +155,7 @@ mod tests {
         let size = [320, 200];
         let perspective = Projection::Perspective { yfov: 0.7, near: 0.1, far: None };
         let orthographic = Projection::Orthographic { ymag: 3.0, near: 0.1, far: 30.0 };
-        [perspective, orthographic].map(|projection| View { world_from_view, projection, size })
+        [perspective, orthographic].map(|projection| View::new(world_from_view, projection, size))
     }
 
     fn light(kind: LightKind) -> Light {

@@ -7,7 +7,7 @@
 
 mod silhouettes;
 
-use crate::{Caster, Counting, Frame, LightKind, Measures, ShadowLight, Shadows, Target};
+use crate::{Caster, Counting, Frame, LightKind, ShadowLight, Shadows, Steps, Target};
 use glam::{DAffine3, DVec3};
 use std::time::Instant;
 use wgpu::{
@@ -58,7 +58,7 @@ impl CostModel {
         pairs * (self.raster_pair_ns - self.tile_pair_ns) > f64::from(pixels) * self.tile_pixel_ns
     }
 
-    /// Measures `device`: a few frames of 512x512 pixels and a few silhouettes, a tenth of a second or two on a software
+    /// Steps `device`: a few frames of 512x512 pixels and a few silhouettes, a tenth of a second or two on a software
     /// device. Keep the result as long as the device.
     #[must_use]
     pub fn calibrate(device: &Device, queue: &Queue) -> Self {
@@ -95,13 +95,13 @@ fn measure_disc(device: &Device, queue: &Queue, spokes: u32) -> Option<(f64, f64
     };
     let positions: Vec<[f32; 3]> = (0..spokes).map(rim).chain([[0.0; 3]]).collect();
     let triangles: Vec<[u32; 3]> = (0..spokes).map(|i| [spokes, i, (i + 1) % spokes]).collect();
-    let both = |_| zfail_plan::topology::Surface::BothSides;
+    let both = |_| zfail_plan::topology::Blocking::BothSides;
     let mesh = shadows.add_mesh(device, queue, &positions, &triangles, both).ok()?;
     let casters = [Caster { mesh, world_from_object: DAffine3::from_translation(DVec3::NEG_Z) }];
     let position = DVec3::new(0.0, 0.0, -1.05);
     let lights = [ShadowLight { kind: LightKind::Point { position, range: f64::INFINITY }, excluded: &[] }];
     let projection = Projection::Perspective { yfov: 1.2, near: 0.01, far: None };
-    let view = View { world_from_view: DAffine3::from_translation(DVec3::Y * 0.2), projection, size: [SIZE; 2] };
+    let view = View::new(DAffine3::from_translation(DVec3::Y * 0.2), projection, [SIZE; 2]);
     let receivers = [Bounds { min: DVec3::splat(-9.0), max: DVec3::splat(9.0) }];
 
     let texture = device.create_texture(&TextureDescriptor {
@@ -121,10 +121,9 @@ fn measure_disc(device: &Device, queue: &Queue, spokes: u32) -> Option<(f64, f64
     let pipelines = shadows.pipelines(device, &target);
 
     let mut frame = |tiles: Tiles| -> Option<(f64, usize)> {
-        let measures = Measures { tiles, ..Technique::Auto.measures() };
+        let steps = Steps { tiles, ..Technique::Auto.steps() };
         let counting = Counting::Verdict;
-        let frame =
-            Frame { view: &view, casters: &casters, lights: &lights, receivers: &receivers, measures, counting };
+        let frame = Frame { view: &view, casters: &casters, lights: &lights, receivers: &receivers, steps, counting };
         let mut least = f64::INFINITY;
         let mut pairs = 0;
         // The first time, pipelines are compiled. The least of several is what the device needs when nobody disturbs it.

@@ -37,9 +37,9 @@ pub use shadows::{Caster, Frame, MeshId, Shadows};
 pub use zfail_plan::bounds::Bounds;
 pub use zfail_plan::light::LightKind;
 pub use zfail_plan::plan::{
-    Counting, Culled, FramePlan, LightStats, Measures, ShadowLight, Silhouettes, Technique, Tiles, Triangles,
+    Counting, Culled, FramePlan, LightStats, ShadowLight, Silhouettes, Steps, Technique, Tiles, Triangles,
     UnknownTechnique, ZPass,
 };
-pub use zfail_plan::topology::{Surface, Topology, TopologyError};
+pub use zfail_plan::topology::{Blocking, Topology, TopologyError};
 pub use zfail_plan::view::{Projection, View};
 pub use zfail_plan::{self, glam};

@@ -17,10 +17,10 @@ use wgpu::{
 };
 use zfail_plan::bounds::Bounds;
 use zfail_plan::plan::{
-    self, Counting, DarkCap, Draw, Extraction, FramePlan, LightCap, LightStats, Measures, Planner, ShadowLight, Tiles,
+    self, Counting, DarkCap, Draw, Extraction, FramePlan, LightCap, LightStats, Planner, ShadowLight, Steps, Tiles,
 };
 use zfail_plan::scissor::Rectangle;
-use zfail_plan::topology::{Surface, Topology};
+use zfail_plan::topology::{Blocking, Topology};
 use zfail_plan::view::View;
 
 /// A mesh registered with one [`Shadows`].
@@ -52,7 +52,7 @@ pub struct Frame<'a> {
     /// save drawing volumes where there is nothing to shadow.
     pub receivers: &'a [Bounds],
     /// Which steps to take; those of [`Technique::Auto`](plan::Technique::Auto) unless you compare.
-    pub measures: Measures,
+    pub steps: Steps,
     /// What the stencil is to hold; [`Counting::Verdict`] unless you look at counts.
     pub counting: Counting,
 }
@@ -111,11 +111,11 @@ impl Shadows {
     /// Registers a mesh: the very triangles that the depth pass draws, with their vertices in the same order.
     /// `positions` are in object space, best kept near its origin; they may repeat (the mesh is welded by exact
     /// position). `surface` tells of each triangle whether it blocks light (a `bool`), or also whether the depth pass draws
-    /// it from both sides or not everywhere (a [`Surface`]).
+    /// it from both sides or not everywhere (a [`Blocking`]).
     ///
     /// # Errors
     /// Indices out of range, coordinates that are not finite, or more vertices than the device's buffers hold.
-    pub fn add_mesh<S: Into<Surface>>(
+    pub fn add_mesh<S: Into<Blocking>>(
         &mut self,
         device: &Device,
         queue: &Queue,
@@ -193,7 +193,7 @@ impl Shadows {
         outcome
     }
 
-    /// What the device's times are: [`Measures::tiles`] and [`Measures::silhouettes`] are decided by them. Without it every
+    /// What the device's times are: [`Steps::tiles`] and [`Steps::silhouettes`] are decided by them. Without it every
     /// volume is rasterised, and every silhouette found on the CPU.
     pub fn set_cost_model(&mut self, costs: CostModel) {
         self.costs = costs;
@@ -207,7 +207,7 @@ impl Shadows {
     /// Lists that are too large for the device's buffers. All volumes are rasterised then.
     pub fn prepare_tiles(&mut self, device: &Device, queue: &Queue) -> Result<bool, Error> {
         self.counted = false;
-        let Some(prepared) = self.prepared.as_ref().filter(|p| p.measures.tiles != Tiles::Never) else {
+        let Some(prepared) = self.prepared.as_ref().filter(|p| p.steps.tiles != Tiles::Never) else {
             return Ok(false);
         };
         let tiled = self.tiled.get_or_insert_with(|| Tiled::new(device));
@@ -254,7 +254,7 @@ impl Shadows {
             casters: &casters,
             lights: frame.lights,
             receivers: frame.receivers,
-            measures: frame.measures,
+            steps: frame.steps,
             counting: frame.counting,
         };
         let plan = self.planner.plan_extracting(&planned, &self.extractable)?;
@@ -286,9 +286,9 @@ impl Shadows {
         let mut kept = self.prepared.take().map(|prepared| prepared.casters).unwrap_or_default();
         kept.clear();
         kept.extend_from_slice(frame.casters);
-        let (measures, counting) = (frame.measures, frame.counting);
-        self.prepared = Some(Prepared { view: *frame.view, casters: kept, measures, counting, visible });
-        self.finite = frame.view.is_finite();
+        let (steps, counting) = (frame.steps, frame.counting);
+        self.prepared = Some(Prepared { view: *frame.view, casters: kept, steps, counting, visible });
+        self.finite = frame.view.has_far_plane();
         self.image = zfail_plan::scissor::full(frame.view);
         Ok(())
     }
@@ -450,7 +450,7 @@ impl Shadows {
 fn find_extractable(extractable: &mut Vec<bool>, device: &Device, frame: &Frame<'_>, arena: &Arena, costs: CostModel) {
     extractable.clear();
     let limits = device.limits();
-    let choice = frame.measures.silhouettes;
+    let choice = frame.steps.silhouettes;
     if choice == plan::Silhouettes::Cpu || !Silhouettes::are_supported(&limits) {
         return;
     }

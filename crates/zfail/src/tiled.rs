@@ -12,7 +12,7 @@ use crate::shadows::Caster;
 use crate::tiles::{Sides, TilePass, TileStats};
 use wgpu::{Device, Queue};
 use zfail_plan::bounds::Bounds;
-use zfail_plan::plan::{Counting, Draw, FramePlan, Measures, Tiles};
+use zfail_plan::plan::{Counting, Draw, FramePlan, Steps, Tiles};
 use zfail_plan::view::{Projection, View};
 
 /// What the draws of a frame refer to.
@@ -20,7 +20,7 @@ use zfail_plan::view::{Projection, View};
 pub(crate) struct Prepared {
     pub view: View,
     pub casters: Vec<Caster>,
-    pub measures: Measures,
+    pub steps: Steps,
     pub counting: Counting,
     /// Bounds of all visible surfaces; empty if they are not known.
     pub visible: Bounds,
@@ -69,8 +69,8 @@ impl Tiled {
     ) -> Result<bool, Error> {
         self.lights.clear();
         self.lights.resize(plan.lights.len(), None);
-        let measures = prepared.measures;
-        if measures.tiles == Tiles::Never
+        let steps = prepared.steps;
+        if steps.tiles == Tiles::Never
             || prepared.counting == Counting::Raw
             || prepared.visible.is_empty()
             || !matches!(prepared.view.projection, Projection::Perspective { .. })
@@ -84,7 +84,7 @@ impl Tiled {
                 let all = light.batches.iter().flat_map(|batch| &plan.draws[batch.start as usize..batch.end as usize]);
                 all.filter(|draw| can_tile(draw))
             };
-            let always = measures.tiles == Tiles::Always;
+            let always = steps.tiles == Tiles::Always;
             let pixels = light.scissor.map_or(0, |[_, _, width, height]| width * height);
             if light.batches.len() > 1
                 || draws().next().is_none()

@@ -27,11 +27,11 @@ fn look_at(eye: DVec3, target: DVec3) -> DAffine3 {
 const SIZE: [u32; 2] = [160, 120];
 
 fn perspective(world_from_view: DAffine3) -> View {
-    View { world_from_view, projection: Projection::Perspective { yfov: 1.0, near: 0.05, far: None }, size: SIZE }
+    View::new(world_from_view, Projection::Perspective { yfov: 1.0, near: 0.05, far: None }, SIZE)
 }
 
 fn orthographic(world_from_view: DAffine3) -> View {
-    View { world_from_view, projection: Projection::Orthographic { ymag: 3.0, near: 0.05, far: 20.0 }, size: SIZE }
+    View::new(world_from_view, Projection::Orthographic { ymag: 3.0, near: 0.05, far: 20.0 }, SIZE)
 }
 
 /// A scene of soups with the light outside or among them, seen from far outside along the light's direction, where the near

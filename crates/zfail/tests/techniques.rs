@@ -5,7 +5,7 @@ mod stage;
 
 use stage::{Random, Setup, Soup, draw};
 use zfail::glam::{DAffine3, DMat3, DQuat, DVec3};
-use zfail::{Counting, FramePlan, LightKind, Measures, Projection, Silhouettes, Technique, Tiles, View, ZPass};
+use zfail::{Counting, FramePlan, LightKind, Projection, Silhouettes, Steps, Technique, Tiles, View, ZPass};
 use zfail_plan::plan::{DarkCap, Extraction, LightCap};
 
 /// A closed ring around y: not convex, with a hole.
@@ -81,7 +81,7 @@ fn scene(seed: u64) -> (View, Vec<(Soup, DAffine3)>, LightKind) {
         }
     };
     let projection = Projection::Perspective { yfov: 1.2, near: 0.1, far: None };
-    (View { world_from_view: place, projection, size: [96, 64] }, things, light)
+    (View::new(place, projection, [96, 64]), things, light)
 }
 
 struct Device(wgpu::Device, wgpu::Queue);
@@ -90,12 +90,12 @@ impl Device {
     fn draw(
         &self,
         seed: u64,
-        measures: Measures,
+        steps: Steps,
         counting: Counting,
         edit: impl FnOnce(&mut FramePlan),
     ) -> (Vec<u8>, FramePlan) {
         let (view, things, light) = scene(seed);
-        draw(&self.0, &self.1, &Setup { measures, counting, ..Setup::default() }, &view, &things, light, edit)
+        draw(&self.0, &self.1, &Setup { steps, counting, ..Setup::default() }, &view, &things, light, edit)
     }
 
     fn truth(&self, seed: u64) -> Vec<u8> {
@@ -112,33 +112,33 @@ const SEEDS: u64 = 40;
 #[test]
 fn every_technique_counts_alike() {
     let Some(device) = device() else { return };
-    let all = Technique::Auto.measures();
-    let plain = Technique::EverittKilgard.measures();
+    let all = Technique::Auto.steps();
+    let plain = Technique::EverittKilgard.steps();
     let steps = [
-        Technique::Auto.measures(),
-        Technique::Lengyel.measures(),
-        Technique::Mcguire.measures(),
-        Measures { off_screen: true, ..plain },
-        Measures { fan: true, ..plain },
-        Measures { receivers: true, ..plain },
-        Measures { z_pass: ZPass::ByCaster, near_count: true, ..plain },
-        Measures { near_count: false, ..all },
-        Measures { receivers: false, ..all },
+        Technique::Auto.steps(),
+        Technique::Lengyel.steps(),
+        Technique::Mcguire.steps(),
+        Steps { off_screen: true, ..plain },
+        Steps { fan: true, ..plain },
+        Steps { receivers: true, ..plain },
+        Steps { z_pass: ZPass::ByCaster, near_count: true, ..plain },
+        Steps { near_count: false, ..all },
+        Steps { receivers: false, ..all },
     ];
     let (mut cases, mut cleared, mut fans, mut scissored) = ([0; 3], 0, 0, 0);
     for seed in 0..SEEDS {
         let truth = device.truth(seed);
-        for (i, measures) in steps.into_iter().enumerate() {
-            let (image, plan) = device.draw(seed, measures, Counting::Raw, |_| {});
+        for (i, steps) in steps.into_iter().enumerate() {
+            let (image, plan) = device.draw(seed, steps, Counting::Raw, |_| {});
             let wrong = truth.iter().zip(&image).filter(|(a, b)| a != b).count();
-            assert_eq!(wrong, 0, "seed {seed}: {wrong} pixels differ with {measures:?}");
+            assert_eq!(wrong, 0, "seed {seed}: {wrong} pixels differ with {steps:?}");
             let light = &plan.lights[0];
             (0..3).for_each(|case| cases[case] += light.stats.cases[case]);
             if i == 0 {
                 cleared += u32::from(light.stats.near_count > 0);
                 scissored += plan.draws.iter().filter(|d| Some(d.scissor) != light.scissor).count();
             }
-            fans += u32::from(measures.fan && light.stats.triangles.dark_cap > 0);
+            fans += u32::from(steps.fan && light.stats.triangles.dark_cap > 0);
         }
     }
     println!("cases {cases:?}, {cleared} near counts above zero, {fans} plans with fans, {scissored} scissored draws");
@@ -168,8 +168,8 @@ fn tiles_give_the_verdicts_of_the_rasteriser() {
     let (mut wrong, mut dark, mut all) = (0, 0, 0);
     for seed in 0..SEEDS {
         let truth = device.draw(seed, Technique::EverittKilgard.into(), Counting::Verdict, |_| {}).0;
-        let measures = Measures { tiles: Tiles::Always, ..Technique::Auto.measures() };
-        let image = device.draw(seed, measures, Counting::Verdict, |_| {}).0;
+        let steps = Steps { tiles: Tiles::Always, ..Technique::Auto.steps() };
+        let image = device.draw(seed, steps, Counting::Verdict, |_| {}).0;
         let differing = truth.iter().zip(&image).filter(|&(&a, &b)| (a == 0) != (b == 0)).count();
         assert!(differing <= 4, "seed {seed}: {differing} verdicts differ");
         wrong += differing;
@@ -189,20 +189,20 @@ type Mistake = (&'static str, fn(&mut Extraction));
 #[test]
 fn silhouettes_of_the_device_count_alike() {
     let Some(device) = device() else { return };
-    let gpu = |technique: Technique| Measures { silhouettes: Silhouettes::Gpu, ..technique.measures() };
+    let gpu = |technique: Technique| Steps { silhouettes: Silhouettes::Gpu, ..technique.steps() };
     let steps = [
         gpu(Technique::Auto),
         gpu(Technique::EverittKilgard),
         gpu(Technique::Mcguire),
-        Measures { fan: true, ..gpu(Technique::EverittKilgard) },
+        Steps { fan: true, ..gpu(Technique::EverittKilgard) },
     ];
     let (mut extracted, mut fans, mut caps, mut exposed) = (0, 0, 0, 0);
     for seed in 0..SEEDS / 2 {
         let truth = device.truth(seed);
-        for measures in steps {
-            let (image, plan) = device.draw(seed, measures, Counting::Raw, |_| {});
+        for steps in steps {
+            let (image, plan) = device.draw(seed, steps, Counting::Raw, |_| {});
             let wrong = truth.iter().zip(&image).filter(|(a, b)| a != b).count();
-            assert_eq!(wrong, 0, "seed {seed}: {wrong} pixels differ with {measures:?}");
+            assert_eq!(wrong, 0, "seed {seed}: {wrong} pixels differ with {steps:?}");
             let extractions = || plan.draws.iter().filter_map(|draw| draw.extraction.as_ref());
             extracted += extractions().count();
             fans += extractions().filter(|e| e.dark_cap == DarkCap::Fan).count();
@@ -210,8 +210,8 @@ fn silhouettes_of_the_device_count_alike() {
             exposed += extractions().filter(|e| e.light_cap == LightCap::Exposed).count();
             assert_eq!(extractions().count(), plan.draws.len(), "seed {seed}: a caster stayed on the CPU");
         }
-        let lit = |measures| {
-            let image = device.draw(seed, measures, Counting::Verdict, |_| {}).0;
+        let lit = |steps| {
+            let image = device.draw(seed, steps, Counting::Verdict, |_| {}).0;
             image.iter().map(|&count| count == 0).collect::<Vec<_>>()
         };
         assert_eq!(lit(Technique::EverittKilgard.into()), lit(gpu(Technique::Auto)), "seed {seed}: verdicts differ");

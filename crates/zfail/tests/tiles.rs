@@ -87,7 +87,7 @@ fn scene(seed: u64) -> Scene {
     let right = DVec3::Y.cross(back).normalize();
     let world_from_view = DAffine3 { matrix3: DMat3::from_cols(right, back.cross(right), back), translation: eye };
     let projection = Projection::Perspective { yfov: random.real(0.6, 1.6), near: 0.05, far: None };
-    Scene { view: View { world_from_view, projection, size: SIZE }, meshes, light }
+    Scene { view: View::new(world_from_view, projection, SIZE), meshes, light }
 }
 
 /// What the rasterised volumes count, and the count at the near plane if it is the same everywhere.
@@ -132,7 +132,7 @@ fn tiled(scene: &Scene, near: u8, fault: Fault) -> Vec<u8> {
             casters: &casters,
             lights: &lights,
             receivers: &[],
-            measures: technique.into(),
+            steps: technique.into(),
             counting,
         })
         .expect("plan");

@@ -97,7 +97,7 @@ impl Host {
                 casters: &casters,
                 lights: &lights,
                 receivers: &[],
-                measures: Technique::Auto.into(),
+                steps: Technique::Auto.into(),
                 counting: Counting::Verdict,
             },
         )?;

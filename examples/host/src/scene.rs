@@ -85,11 +85,11 @@ pub fn view(size: [u32; 2]) -> View {
     let eye = DVec3::new(2.6, 3.1, 3.9);
     let back = (eye - DVec3::new(0.0, 0.35, 0.0)).normalize();
     let right = DVec3::Y.cross(back).normalize();
-    View {
-        world_from_view: DAffine3 { matrix3: DMat3::from_cols(right, back.cross(right), back), translation: eye },
-        projection: Projection::Perspective { yfov: 0.8, near: 0.1, far: None },
+    View::new(
+        DAffine3 { matrix3: DMat3::from_cols(right, back.cross(right), back), translation: eye },
+        Projection::Perspective { yfov: 0.8, near: 0.1, far: None },
         size,
-    }
+    )
 }
 
 fn quads(corners: &[[[f32; 3]; 4]]) -> Mesh {

@@ -1,4 +1,4 @@
-//! Measures of closedness for tests.
+//! Steps of closedness for tests.
 
 use rustc_hash::FxHashMap;
 use zfail_scene::Mesh;

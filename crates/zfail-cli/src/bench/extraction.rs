@@ -10,7 +10,7 @@ use serde::Serialize;
 use std::time::{Duration, Instant};
 use zfail_plan::glam::{DAffine3, DVec3};
 use zfail_plan::light::LightKind;
-use zfail_plan::plan::{Counting, Measures, ShadowLight, Silhouettes, Technique};
+use zfail_plan::plan::{Counting, ShadowLight, Silhouettes, Steps, Technique};
 use zfail_plan::view::View;
 use zfail_render::zfail::{Caster, Frame, MeshId, Shadows};
 use zfail_render::{Gpu, wgpu};
@@ -56,7 +56,7 @@ pub fn measure(gpu: &Gpu, mesh: &Mesh, view: &View, light: DVec3) -> Result<Extr
 struct Player {
     shadows: Shadows,
     mesh: MeshId,
-    measures: Measures,
+    steps: Steps,
 }
 
 impl Player {
@@ -64,15 +64,15 @@ impl Player {
         let mut shadows = Shadows::new(&gpu.device);
         let mesh = shadows.add_mesh(&gpu.device, &gpu.queue, &mesh.positions, &mesh.triangles, |_| true);
         // As in the lines beside: no near count.
-        let measures = Measures { silhouettes, near_count: false, ..Technique::default().measures() };
-        Ok(Self { mesh: mesh.map_err(|e| chain(&e))?, shadows, measures })
+        let steps = Steps { silhouettes, near_count: false, ..Technique::default().steps() };
+        Ok(Self { mesh: mesh.map_err(|e| chain(&e))?, shadows, steps })
     }
 
     fn play(&mut self, gpu: &Gpu, view: &View, light: DVec3) -> Result<Duration, String> {
         let casters = [Caster { mesh: self.mesh, world_from_object: DAffine3::IDENTITY }];
         let lights = [ShadowLight { kind: LightKind::Point { position: light, range: f64::INFINITY }, excluded: &[] }];
-        let (measures, counting) = (self.measures, Counting::Verdict);
-        let frame = Frame { view, casters: &casters, lights: &lights, receivers: &[], measures, counting };
+        let (steps, counting) = (self.steps, Counting::Verdict);
+        let frame = Frame { view, casters: &casters, lights: &lights, receivers: &[], steps, counting };
         let (wall, cpu) = (Instant::now(), ProcessTime::now());
         self.shadows.prepare(&gpu.device, &gpu.queue, &frame).map_err(|e| chain(&e))?;
         // What is only written goes to the device with the next submission.

@@ -19,7 +19,7 @@ use measure::{Samples, Setup};
 use record::Record;
 use scenes::Course;
 
-/// Measures, then prints.
+/// Steps, then prints.
 ///
 /// # Errors
 /// If a scene or the device fails, or standard output cannot be written.

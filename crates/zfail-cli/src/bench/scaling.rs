@@ -16,7 +16,7 @@ use std::time::Instant;
 use zfail_builtin::shapes;
 use zfail_plan::glam::{DAffine3, DMat3, DVec3};
 use zfail_plan::light::LightKind;
-use zfail_plan::plan::{Caster, Counting, Frame, LightStats, Measures, Planner, ShadowLight, Technique};
+use zfail_plan::plan::{Caster, Counting, Frame, LightStats, Planner, ShadowLight, Steps, Technique};
 use zfail_plan::topology::Topology;
 use zfail_plan::view::{Projection, View};
 use zfail_render::Gpu;
@@ -90,7 +90,7 @@ fn root(triangles: usize, each: f64) -> usize {
     ((triangles as f64 / each).sqrt().round() as usize).max(1)
 }
 
-/// Measures all bodies at all `sizes`.
+/// Steps all bodies at all `sizes`.
 ///
 /// # Errors
 /// If a body cannot cast shadows, which would be a fault of ours, or the device fails.
@@ -151,7 +151,7 @@ fn plan(
             lights: &lights,
             receivers: &[],
             // The near count would make a z-pass of almost everything, and two of the three cases would not be seen.
-            measures: Measures { near_count: false, ..Technique::default().measures() },
+            steps: Steps { near_count: false, ..Technique::default().steps() },
             counting: Counting::Verdict,
         };
         let start = Instant::now();
@@ -184,11 +184,11 @@ fn plan(
 fn view(eye: DVec3, target: DVec3) -> View {
     let back = (eye - target).normalize();
     let right = DVec3::Y.cross(back).normalize();
-    View {
-        world_from_view: DAffine3 { matrix3: DMat3::from_cols(right, back.cross(right), back), translation: eye },
-        projection: Projection::Perspective { yfov: 1.0, near: 0.05, far: None },
-        size: [1280, 720],
-    }
+    View::new(
+        DAffine3 { matrix3: DMat3::from_cols(right, back.cross(right), back), translation: eye },
+        Projection::Perspective { yfov: 1.0, near: 0.05, far: None },
+        [1280, 720],
+    )
 }
 
 /// The lines as a table; `device` found silhouettes.

@@ -55,7 +55,7 @@ pub struct Args {
     verbosity: Verbosity,
 }
 
-/// Measures and photographs, writes everything, prints the table.
+/// Steps and photographs, writes everything, prints the table.
 ///
 /// # Errors
 /// If the scene or the device fails, a file cannot be written, or a method that promises to be exact is not.

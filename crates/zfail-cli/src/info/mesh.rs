@@ -3,7 +3,7 @@
 use super::report::alpha_name;
 use crate::error::Error;
 use serde::Serialize;
-use zfail_plan::topology::{NONE, Part, Shape, Surface};
+use zfail_plan::topology::{Blocking, NONE, Part, Shape};
 use zfail_scene::{AlphaMode, Scene};
 
 /// A mesh: its size, how closed it is, and how it casts.
@@ -94,7 +94,7 @@ fn surfaces(scene: &Scene, index: usize) -> Vec<SurfaceReport> {
             None => surfaces.push(SurfaceReport {
                 material: primitive.material,
                 alpha: alpha_name(primitive.material.map_or(AlphaMode::Opaque, |m| scene.materials[m].alpha)),
-                casts: scene.triangle_surface(index, primitive.triangles.start as usize) != Surface::Through,
+                casts: scene.triangle_blocking(index, primitive.triangles.start as usize) != Blocking::Nothing,
                 triangles,
             }),
         }

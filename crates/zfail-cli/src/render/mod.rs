@@ -1,18 +1,18 @@
 //! `zfail render`: one frame of a scene as files, or many.
 //!
 //! Data flow: `destinations` (where everything goes) -> `results` (a rendered frame, encoded) -> [`crate::output`].
-//! `measures` says who does the work, `overlays` draws on the picture. `sequence` does so for numbered frames, and `seal` tells it which of them are there already.
+//! `steps` says who does the work, `overlays` draws on the picture. `sequence` does so for numbered frames, and `seal` tells it which of them are there already.
 
 mod destinations;
-mod measures;
 mod overlays;
 mod results;
 mod seal;
 mod sequence;
+mod steps;
 
-pub use measures::MeasureArgs;
 pub use overlays::OverlayArgs;
 pub use results::picture_file;
+pub use steps::StepArgs;
 
 use crate::args;
 use crate::console;
@@ -31,7 +31,7 @@ use zfail_scene::Animated;
 /// If an argument names nothing in the scene, the scene or the device fails, or a file cannot be written.
 pub fn run(args: &args::Render) -> Result<(), Error> {
     args.overlays.check(&args.output)?;
-    args.measures.check(args.technique, args.samples)?;
+    args.steps.check(args.technique, args.samples)?;
     match &args.sequence.frames {
         Some(frames) => sequence::run(args, frames.0.clone()),
         None => still(args),
@@ -81,7 +81,7 @@ fn load(args: &args::Render, moment: Option<&args::Moment>) -> Result<Animated, 
 
 fn settings(args: &args::Render, lights: &[usize]) -> Settings {
     // Files are the same bytes on every run.
-    args.measures.apply(Settings {
+    args.steps.apply(Settings {
         technique: args.technique,
         samples: args.samples,
         shadows: !args.no_shadows,

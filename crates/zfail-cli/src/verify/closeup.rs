@@ -194,7 +194,7 @@ fn looking(eye: DVec3, towards: DVec3, near: f64, yfov: f64, size: [u32; 2]) -> 
     let right = towards.cross(up).normalize();
     let axes = DMat3::from_cols(right, right.cross(towards), -towards);
     let world_from_view = DAffine3::from_mat3_translation(axes, eye);
-    View { world_from_view, projection: Projection::Perspective { yfov, near, far: None }, size }
+    View::new(world_from_view, Projection::Perspective { yfov, near, far: None }, size)
 }
 
 #[cfg(test)]

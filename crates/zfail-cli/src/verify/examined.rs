@@ -64,7 +64,7 @@ impl Judge<'_> {
         Ok(Examined { lights, truths, images })
     }
 
-    /// Measures on a small picture how long rays will take, says so if it is long, and gives up if it is too long.
+    /// Steps on a small picture how long rays will take, says so if it is long, and gives up if it is too long.
     ///
     /// # Errors
     /// If it would take more than half an hour.

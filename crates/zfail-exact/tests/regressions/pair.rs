@@ -58,7 +58,7 @@ fn view(size: [u32; 2]) -> View {
     let eye = DVec3::new(0.105_986_709_032_751_58, 0.086_869_930_234_986_51, 0.164_015_998_954_451_01);
     let projection =
         Projection::Perspective { yfov: std::f64::consts::FRAC_PI_4, near: 0.001_096_087_061_673_855_2, far: None };
-    View { world_from_view: DAffine3 { matrix3: axes, translation: eye }, projection, size }
+    View::new(DAffine3 { matrix3: axes, translation: eye }, projection, size)
 }
 
 #[test]

@@ -60,11 +60,11 @@ pub fn scene(cubes: &[DVec3], lights: &[DVec3]) -> Scene {
 pub fn look(eye: DVec3, target: DVec3) -> View {
     let back = (eye - target).normalize();
     let right = DVec3::Y.cross(back).normalize();
-    View {
-        world_from_view: DAffine3 { matrix3: DMat3::from_cols(right, back.cross(right), back), translation: eye },
-        projection: Projection::Perspective { yfov: 0.9, near: 0.1, far: None },
-        size: SIZE,
-    }
+    View::new(
+        DAffine3 { matrix3: DMat3::from_cols(right, back.cross(right), back), translation: eye },
+        Projection::Perspective { yfov: 0.9, near: 0.1, far: None },
+        SIZE,
+    )
 }
 
 /// The direction of the ray through the centre of a pixel, one unit deep.

@@ -70,11 +70,11 @@ impl<'g> Case<'g> {
 pub fn look(eye: DVec3, target: DVec3, near: f64) -> View {
     let back = (eye - target).normalize();
     let right = DVec3::Y.cross(back).try_normalize().unwrap_or(DVec3::X);
-    View {
-        world_from_view: DAffine3 { matrix3: DMat3::from_cols(right, back.cross(right), back), translation: eye },
-        projection: Projection::Perspective { yfov: 1.0, near, far: None },
-        size: SIZE,
-    }
+    View::new(
+        DAffine3 { matrix3: DMat3::from_cols(right, back.cross(right), back), translation: eye },
+        Projection::Perspective { yfov: 1.0, near, far: None },
+        SIZE,
+    )
 }
 
 /// A horizontal square around `center`, seen from both sides.

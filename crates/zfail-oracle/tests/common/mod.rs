@@ -108,5 +108,5 @@ pub fn look(eye: DVec3, target: DVec3, size: [u32; 2]) -> View {
     let right = DVec3::Y.cross(back).normalize();
     let matrix3 = DMat3::from_cols(right, back.cross(right), back);
     let world_from_view = DAffine3 { matrix3, translation: eye };
-    View { world_from_view, projection: Projection::Perspective { yfov: 0.8, near: 0.05, far: None }, size }
+    View::new(world_from_view, Projection::Perspective { yfov: 0.8, near: 0.05, far: None }, size)
 }

@@ -12,7 +12,7 @@ use crate::bounds::Bounds;
 use crate::casting::ObjectLight;
 use crate::topology::Topology;
 use crate::view::{Projection, View};
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 
 /// Triangles of which one on the unit sphere comes nearer to the light cast nothing: seen so nearly edge-on that f32 could
 /// not extrude them. Their shadow is a hundred thousand times thinner than long.
@@ -70,10 +70,10 @@ pub(super) fn reach(
 ) -> f32 {
     /// Clear of the farthest corner.
     const MARGIN: f64 = 1.01;
-    let Projection::Orthographic { ymag, near, far } = view.projection else { return 0.0 };
-    let xmag = ymag * view.aspect();
+    let Projection::Orthographic { near, far, .. } = view.projection else { return 0.0 };
+    let [lower, upper] = [-1.0, 1.0].map(|border| view.on_image_plane(DVec2::splat(border)));
     let corner = |i: u8| {
-        let [x, y, z] = [(1, xmag, -xmag), (2, ymag, -ymag), (4, -near, -far)]
+        let [x, y, z] = [(1, upper.x, lower.x), (2, upper.y, lower.y), (4, -near, -far)]
             .map(|(bit, one, other)| if i & bit == 0 { one } else { other });
         object_from_relative.transform_point3(view.world_from_view.matrix3 * DVec3::new(x, y, z))
     };

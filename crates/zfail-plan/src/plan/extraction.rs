@@ -9,7 +9,7 @@ use super::batches::SINGLE;
 use super::off_screen::Parts;
 use super::pair::{Pair, Role};
 use super::placed::Placed;
-use super::{Counting, Frame, Measures, Silhouettes};
+use super::{Counting, Frame, Silhouettes, Steps};
 use crate::casting::{self, Casting, ObjectLight};
 use crate::topology::Topology;
 use crate::view::Projection;
@@ -173,14 +173,14 @@ impl Pair {
 }
 
 /// Chooses which pairs of a light go to the device. Returns how many layers they have at most, if there are any.
-pub(super) fn choose(frame: &Frame<'_>, measures: Measures, extractable: &[bool], pairs: &mut [Pair]) -> Option<usize> {
+pub(super) fn choose(frame: &Frame<'_>, steps: Steps, extractable: &[bool], pairs: &mut [Pair]) -> Option<usize> {
     let perspective = matches!(frame.view.projection, Projection::Perspective { .. });
     let mut candidates = 0;
     for (c, pair) in pairs.iter_mut().enumerate() {
         let can = perspective && pair.role != Role::Idle && extractable.get(c).is_some_and(|&can| can);
         // Which of coincident triangles is visible would have to be known.
         let can = can && frame.casters[c].topology.twins.is_empty();
-        pair.on_device = can && pair.is_candidate(measures.silhouettes);
+        pair.on_device = can && pair.is_candidate(steps.silhouettes);
         candidates += usize::from(pair.on_device);
     }
     if candidates == 0 {
@@ -201,7 +201,7 @@ pub(super) fn choose(frame: &Frame<'_>, measures: Measures, extractable: &[bool]
     let prove = |(c, pair): (usize, &mut Pair)| {
         if unproved(pair) {
             let topology = frame.casters[c].topology;
-            let least = if measures.silhouettes == Silhouettes::Gpu { 0.0 } else { WORTH * pair.step };
+            let least = if steps.silhouettes == Silhouettes::Gpu { 0.0 } else { WORTH * pair.step };
             pair.extracted.prove(topology, pair.mesh(), pair.light, LAYERS / candidates, least);
         }
     };
@@ -220,6 +220,6 @@ pub(super) fn choose(frame: &Frame<'_>, measures: Measures, extractable: &[bool]
 }
 
 /// Whether the fan closes a caster's volume, too.
-pub(super) fn may_fan(measures: Measures, caster: &Placed, light: ObjectLight) -> bool {
-    measures.fan && caster.is_strictly_outside(light)
+pub(super) fn may_fan(steps: Steps, caster: &Placed, light: ObjectLight) -> bool {
+    steps.fan && caster.is_strictly_outside(light)
 }

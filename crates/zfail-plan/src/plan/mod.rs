@@ -29,7 +29,7 @@ mod technique;
 
 pub use extraction::{DarkCap, Extraction, LightCap};
 pub use stats::{Culled, LightStats, Triangles};
-pub use technique::{Counting, Measures, Silhouettes, Technique, Tiles, UnknownTechnique, ZPass};
+pub use technique::{Counting, Silhouettes, Steps, Technique, Tiles, UnknownTechnique, ZPass};
 
 use crate::bounds::Bounds;
 use crate::casting::{Casting, ObjectLight};
@@ -75,7 +75,7 @@ pub struct Frame<'a> {
     /// Boxes in world space that together hold every surface in the depth buffer; empty where that is not known.
     pub receivers: &'a [Bounds],
     /// Which steps to take; [`Technique`]s are made of them.
-    pub measures: Measures,
+    pub steps: Steps,
     /// What the stencil is to hold afterwards.
     pub counting: Counting,
 }

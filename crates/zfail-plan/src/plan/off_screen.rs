@@ -86,7 +86,7 @@ mod tests {
 
     fn parts(center: DVec3, light: Vec4) -> Parts {
         let projection = Projection::Perspective { yfov: std::f64::consts::FRAC_PI_2, near: 0.1, far: None };
-        let view = View { world_from_view: DAffine3::IDENTITY, projection, size: [100, 100] };
+        let view = View::new(DAffine3::IDENTITY, projection, [100, 100]);
         let bounds = Bounds { min: center - 0.5, max: center + 0.5 };
         visible_parts(&view, [0, 0, 100, 100], &DAffine3::IDENTITY, &bounds, light)
     }
@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn what_can_be_seen_is_kept() {
         let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
-        let view = View { world_from_view: DAffine3::IDENTITY, projection, size: [64, 48] };
+        let view = View::new(DAffine3::IDENTITY, projection, [64, 48]);
         let within = [10, 5, 20, 30];
         let mut seed = 5_u64;
         let mut random = || {

@@ -12,25 +12,20 @@ use crate::bounds::Bounds;
 use crate::casting::ObjectLight;
 use crate::scissor::Rectangle;
 use crate::view::{Projection, View};
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 
 /// The part of the near rectangle behind pixels `within`, grown by 2 % and by `pad` (world units) to either side and to
 /// both depths: eight corners relative to the eye, the nearer four first, each four in a cycle.
 pub(super) fn near_slab(view: &View, within: Rectangle, pad: f64) -> [DVec3; 8] {
     let near = view.near();
-    let half = match view.projection {
-        Projection::Perspective { yfov, .. } => near * (0.5 * yfov).tan(),
-        Projection::Orthographic { ymag, .. } => ymag,
-    };
-    let half = [half * view.aspect(), half];
+    let spread = if matches!(view.projection, Projection::Perspective { .. }) { near } else { 1.0 };
     let [x, y, width, height] = within.map(f64::from);
     let [columns, rows] = view.size.map(f64::from);
-    let ndc = [
-        [2.0 * x / columns - 1.0, 2.0 * (x + width) / columns - 1.0],
-        [1.0 - 2.0 * (y + height) / rows, 1.0 - 2.0 * y / rows],
-    ];
+    let lower = DVec2::new(2.0 * x / columns - 1.0, 1.0 - 2.0 * (y + height) / rows);
+    let upper = DVec2::new(2.0 * (x + width) / columns - 1.0, 1.0 - 2.0 * y / rows);
+    let corners = [lower, upper].map(|ndc| view.on_image_plane(ndc) * spread);
     let span: [[f64; 2]; 2] = std::array::from_fn(|i| {
-        let [lo, hi] = ndc[i].map(|v| v * half[i]);
+        let [lo, hi] = corners.map(|corner| corner[i]);
         let grown = 0.02 * (hi - lo) + pad;
         [lo - grown, hi + grown]
     });
@@ -153,7 +148,7 @@ mod tests {
 
     fn view() -> View {
         let projection = Projection::Perspective { yfov: std::f64::consts::FRAC_PI_2, near: 0.1, far: None };
-        View { world_from_view: DAffine3::IDENTITY, projection, size: [100, 100] }
+        View::new(DAffine3::IDENTITY, projection, [100, 100])
     }
 
     fn cube(center: DVec3, half: f64) -> Bounds {

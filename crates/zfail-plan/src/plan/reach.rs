@@ -117,7 +117,7 @@ mod tests {
 
     fn view() -> View {
         let projection = Projection::Perspective { yfov: std::f64::consts::FRAC_PI_2, near: 0.1, far: None };
-        View { world_from_view: DAffine3::IDENTITY, projection, size: [100, 100] }
+        View::new(DAffine3::IDENTITY, projection, [100, 100])
     }
 
     fn excludes(reach: &Reach, center: DVec3, half: f64) -> bool {

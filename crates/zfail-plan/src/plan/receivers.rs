@@ -9,7 +9,7 @@ use crate::bounds::Bounds;
 use crate::convex::{Knife, Polyhedron};
 use crate::scissor::{self, Rectangle};
 use crate::view::{Projection, View};
-use glam::{DVec3, DVec4};
+use glam::{DVec2, DVec3, DVec4};
 
 /// Pairs of faces of a box (axis, side) that share an edge, with the two corners of that edge.
 const EDGES: [([usize; 2], [usize; 2]); 12] = [
@@ -131,19 +131,23 @@ fn shadow_planes<'p>(corners: &[DVec3; 8], light: DVec4, out: &'p mut [DVec4; MO
 fn frustum(view: &View) -> [DVec4; 5] {
     let (x, y) = (view.world_from_view.matrix3.x_axis, view.world_from_view.matrix3.y_axis);
     let forward = -view.world_from_view.matrix3.z_axis;
-    let grown = view.size.map(|s| 1.0 + 2.0 / f64::from(s));
+    let grown = DVec2::from(view.size.map(|s| 1.0 + 2.0 / f64::from(s)));
     // Nothing nearer is visible.
     let near = forward.extend(-view.near() + 1e-6 * view.near().abs());
+    let [lower, upper] = [-1.0, 1.0].map(|border| view.on_image_plane(grown * border));
     match view.projection {
-        Projection::Perspective { yfov, .. } => {
-            let half = (0.5 * yfov).tan();
-            let (right, up) = (half * view.aspect() * grown[0], half * grown[1]);
+        Projection::Perspective { .. } => {
             let side = |n: DVec3| n.extend(0.0);
-            [side(forward * right - x), side(forward * right + x), side(forward * up - y), side(forward * up + y), near]
+            [
+                side(forward * upper.x - x),
+                side(x - forward * lower.x),
+                side(forward * upper.y - y),
+                side(y - forward * lower.y),
+                near,
+            ]
         }
-        Projection::Orthographic { ymag, .. } => {
-            let (right, up) = (ymag * view.aspect() * grown[0], ymag * grown[1]);
-            [(-x).extend(right), x.extend(right), (-y).extend(up), y.extend(up), near]
+        Projection::Orthographic { .. } => {
+            [(-x).extend(upper.x), x.extend(-lower.x), (-y).extend(upper.y), y.extend(-lower.y), near]
         }
     }
 }
@@ -157,7 +161,7 @@ mod tests {
     #[test]
     fn every_visible_point_in_a_shadow_lies_in_its_pixels() {
         let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
-        let view = View { world_from_view: DAffine3::IDENTITY, projection, size: [160, 120] };
+        let view = View::new(DAffine3::IDENTITY, projection, [160, 120]);
         let mut seed = 21_u64;
         let mut random = || {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

@@ -13,7 +13,7 @@ use super::pyramid::{self, Pyramid};
 use super::reach::Reach;
 use super::receivers::Receivers;
 use super::store::Store;
-use super::{Counting, Culled, Draw, Frame, FramePlan, LightPlan, LightStats, Measures, PlanError, ZPass, caps};
+use super::{Counting, Culled, Draw, Frame, FramePlan, LightPlan, LightStats, PlanError, Steps, ZPass, caps};
 use crate::scissor::{self, Rectangle};
 use crate::volume::Volume;
 use glam::DVec4;
@@ -63,7 +63,7 @@ impl Planner {
     }
 
     /// Plans `frame` for a device that can find the silhouettes of those casters that are `extractable`, of meshes without
-    /// coincident triangles; the rest of the slice may be missing. [`Measures::silhouettes`] says whether it is asked to.
+    /// coincident triangles; the rest of the slice may be missing. [`Steps::silhouettes`] says whether it is asked to.
     ///
     /// # Errors
     /// As [`Self::plan`].
@@ -77,9 +77,9 @@ impl Planner {
     }
 
     fn fill(&mut self, frame: &Frame<'_>, extractable: &[bool]) -> Result<(), PlanError> {
-        let measures = match frame.counting {
-            Counting::Verdict => frame.measures,
-            Counting::Raw => frame.measures.keeping_counts(),
+        let steps = match frame.counting {
+            Counting::Verdict => frame.steps,
+            Counting::Raw => frame.steps.keeping_counts(),
         };
         let (casters, lights) = (frame.casters.len(), frame.lights.len());
         if self.pairs.len() != casters * lights || self.plan.lights.len() != lights {
@@ -96,7 +96,7 @@ impl Planner {
         let mut placed = std::mem::take(&mut self.placed);
         placed.clear();
         placed.extend(frame.casters.iter().map(|caster| Placed::new(caster, frame.view)));
-        let outcome = self.fill_placed(frame, measures, extractable, &placed);
+        let outcome = self.fill_placed(frame, steps, extractable, &placed);
         self.placed = placed;
         outcome
     }
@@ -104,7 +104,7 @@ impl Planner {
     fn fill_placed(
         &mut self,
         frame: &Frame<'_>,
-        measures: Measures,
+        steps: Steps,
         extractable: &[bool],
         placed: &[Placed],
     ) -> Result<(), PlanError> {
@@ -117,9 +117,9 @@ impl Planner {
         }
 
         for l in 0..lights {
-            self.choose(frame, measures, l, placed)?;
+            self.choose(frame, steps, l, placed)?;
         }
-        self.extract(frame, measures, extractable, placed);
+        self.extract(frame, steps, extractable, placed);
         self.weigh(frame);
         // Where the device takes part, one batch is known to do.
         for (l, pairs) in self.pairs.chunks_mut(casters).enumerate().filter(|&(l, _)| self.layers[l].is_none()) {
@@ -127,26 +127,26 @@ impl Planner {
         }
         self.in_parallel(frame, |pair, _| !pair.is_built(), |pair, c| pair.build_sides(frame.casters[c].topology));
         for (l, pairs) in self.pairs.chunks_mut(casters).enumerate() {
-            count_from_near_rectangle(frame, measures, &mut self.plan.lights[l], pairs, placed);
+            count_from_near_rectangle(frame, steps, &mut self.plan.lights[l], pairs, placed);
         }
         self.in_parallel(
             frame,
             |pair, c| pair.lacks_caps(frame.casters[c].topology),
             |pair, c| {
-                pair.build_caps(frame.casters[c].topology, frame.view, &placed[c], measures.fan);
+                pair.build_caps(frame.casters[c].topology, frame.view, &placed[c], steps.fan);
             },
         );
         for l in 0..lights {
-            self.append(frame, measures, l, placed)?;
+            self.append(frame, steps, l, placed)?;
         }
         Ok(())
     }
 
     /// Leaves silhouettes to the device where that is chosen and counts cannot wrap.
-    fn extract(&mut self, frame: &Frame<'_>, measures: Measures, extractable: &[bool], placed: &[Placed]) {
+    fn extract(&mut self, frame: &Frame<'_>, steps: Steps, extractable: &[bool], placed: &[Placed]) {
         self.layers.clear();
         let lights = self.pairs.chunks_mut(placed.len());
-        self.layers.extend(lights.map(|pairs| extraction::choose(frame, measures, extractable, pairs)));
+        self.layers.extend(lights.map(|pairs| extraction::choose(frame, steps, extractable, pairs)));
         if self.layers.iter().all(Option::is_none) {
             return;
         }
@@ -197,16 +197,16 @@ impl Planner {
     }
 
     /// Decides which casters of light `l` draw what and where, as far as boxes tell.
-    fn choose(&mut self, frame: &Frame<'_>, measures: Measures, l: usize, placed: &[Placed]) -> Result<(), PlanError> {
+    fn choose(&mut self, frame: &Frame<'_>, steps: Steps, l: usize, placed: &[Placed]) -> Result<(), PlanError> {
         let (view, light) = (frame.view, &frame.lights[l]);
-        if measures.reach {
+        if steps.reach {
             self.reach.set(&light.kind, view.eye());
         } else {
             self.reach.clear();
         }
         let plan = &mut self.plan.lights[l];
         plan.begin(self.reach.scissor(view));
-        let receivers = measures.receivers && !frame.receivers.is_empty();
+        let receivers = steps.receivers && !frame.receivers.is_empty();
         if receivers {
             self.receivers.set(frame.receivers, view, &self.reach);
         }
@@ -224,7 +224,7 @@ impl Planner {
                     return Err(Culled::Empty);
                 }
                 let mut within = plan.scissor.ok_or(Culled::LightOffScreen)?;
-                if measures.reach && self.reach.excludes(&caster.world, caster.center, caster.axes) {
+                if steps.reach && self.reach.excludes(&caster.world, caster.center, caster.axes) {
                     return Err(Culled::OutOfReach);
                 }
                 if receivers {
@@ -242,7 +242,7 @@ impl Planner {
                 }
             };
             pair.aim(caster, &light.kind).ok_or(PlanError::Singular { caster: c })?;
-            let parts = if measures.off_screen {
+            let parts = if steps.off_screen {
                 off_screen::visible_parts(view, within, &caster.world_from_object, &caster.bounds, pair.light)
             } else {
                 Parts::ALL
@@ -253,25 +253,25 @@ impl Planner {
                 plan.stats.cull(Culled::OffScreen);
                 continue;
             }
-            let z_pass = measures.z_pass != ZPass::Never && is_clear(frame, caster, pair, within);
+            let z_pass = steps.z_pass != ZPass::Never && is_clear(frame, caster, pair, within);
             pair.role = Role::Active { within, parts, z_pass };
         }
         let z_fail = |pair: &Pair| matches!(pair.role, Role::Active { z_pass: false, .. });
-        if measures.z_pass == ZPass::ByLight && pairs.iter().any(z_fail) {
+        if steps.z_pass == ZPass::ByLight && pairs.iter().any(z_fail) {
             for pair in pairs.iter_mut() {
                 if let Role::Active { z_pass, .. } = &mut pair.role {
                     *z_pass = false;
                 }
             }
         }
-        self.leave_out_occluded(frame, measures, l, placed, relative);
+        self.leave_out_occluded(frame, steps, l, placed, relative);
         Ok(())
     }
 
     /// Idles casters in the shadow of convex ones.
-    fn leave_out_occluded(&mut self, frame: &Frame<'_>, measures: Measures, l: usize, placed: &[Placed], light: DVec4) {
+    fn leave_out_occluded(&mut self, frame: &Frame<'_>, steps: Steps, l: usize, placed: &[Placed], light: DVec4) {
         let pairs = &mut self.pairs[l * placed.len()..(l + 1) * placed.len()];
-        let most = usize::from(measures.occluders);
+        let most = usize::from(steps.occluders);
         if most == 0 || pairs.iter().filter(|pair| pair.role != Role::Idle).count() < 2 {
             return;
         }
@@ -326,7 +326,7 @@ impl Planner {
     }
 
     /// Appends the draws of one light, batch by batch, z-pass before z-fail.
-    fn append(&mut self, frame: &Frame<'_>, measures: Measures, l: usize, placed: &[Placed]) -> Result<(), PlanError> {
+    fn append(&mut self, frame: &Frame<'_>, steps: Steps, l: usize, placed: &[Placed]) -> Result<(), PlanError> {
         let Self { pairs, plan, store, .. } = self;
         let pairs = &mut pairs[l * placed.len()..(l + 1) * placed.len()];
         let FramePlan { indices, castings, draws, lights, changed } = plan;
@@ -349,7 +349,7 @@ impl Planner {
                         continue;
                     }
                     if pair.on_device {
-                        let fan = extraction::may_fan(measures, &placed[c], pair.light);
+                        let fan = extraction::may_fan(steps, &placed[c], pair.light);
                         light.stats.extracted += 1;
                         draws.push(Draw {
                             caster: c as u32,
@@ -412,12 +412,12 @@ fn pyramid_of(frame: &Frame<'_>, caster: &Placed, pair: &Pair, within: Rectangle
 /// Turns z-fail into z-pass where the count at the near rectangle is known, and adds those counts up.
 fn count_from_near_rectangle(
     frame: &Frame<'_>,
-    measures: Measures,
+    steps: Steps,
     light: &mut LightPlan,
     pairs: &mut [Pair],
     placed: &[Placed],
 ) {
-    let Some(scissor) = light.scissor.filter(|_| measures.near_count) else { return };
+    let Some(scissor) = light.scissor.filter(|_| steps.near_count) else { return };
     let mut sum = 0;
     for (c, (pair, caster)) in pairs.iter_mut().zip(placed).enumerate() {
         let Role::Active { within, parts, z_pass: false } = pair.role else { continue };

@@ -6,7 +6,7 @@ use std::str::FromStr;
 /// Which published algorithm decides what is drawn. All give the same verdict at every pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Technique {
-    /// The best there is: every step of [`Measures`].
+    /// The best there is: every step of [`Steps`].
     #[default]
     Auto,
     /// Everitt & Kilgard 2002: every caster's whole volume by z-fail, nothing culled.
@@ -35,8 +35,8 @@ impl Technique {
 
     /// The steps it takes.
     #[must_use]
-    pub const fn measures(self) -> Measures {
-        let nothing = Measures {
+    pub const fn steps(self) -> Steps {
+        let nothing = Steps {
             reach: false,
             off_screen: false,
             z_pass: ZPass::Never,
@@ -47,14 +47,14 @@ impl Technique {
             tiles: Tiles::Never,
             silhouettes: Silhouettes::Cpu,
         };
-        let mcguire = Measures { reach: true, off_screen: true, z_pass: ZPass::ByCaster, fan: true, ..nothing };
+        let mcguire = Steps { reach: true, off_screen: true, z_pass: ZPass::ByCaster, fan: true, ..nothing };
         match self {
             Self::EverittKilgard => nothing,
-            Self::Lengyel => Measures { reach: true, z_pass: ZPass::ByLight, ..nothing },
+            Self::Lengyel => Steps { reach: true, z_pass: ZPass::ByLight, ..nothing },
             Self::Mcguire => mcguire,
             Self::Auto => {
                 let (tiles, silhouettes) = (Tiles::WhereCheaper, Silhouettes::WhereCheaper);
-                Measures { near_count: true, receivers: true, occluders: 8, tiles, silhouettes, ..mcguire }
+                Steps { near_count: true, receivers: true, occluders: 8, tiles, silhouettes, ..mcguire }
             }
         }
     }
@@ -62,7 +62,7 @@ impl Technique {
 
 /// The steps beyond counting every volume by z-fail. Each can be taken or left; none changes a verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Measures {
+pub struct Steps {
     /// Leave out pixels and casters that the light cannot reach.
     pub reach: bool,
     /// Leave out volumes, and parts of volumes, that do not come into view.
@@ -105,19 +105,19 @@ pub enum Tiles {
     Always,
 }
 
-impl Default for Measures {
+impl Default for Steps {
     fn default() -> Self {
-        Technique::Auto.measures()
+        Technique::Auto.steps()
     }
 }
 
-impl From<Technique> for Measures {
+impl From<Technique> for Steps {
     fn from(technique: Technique) -> Self {
-        technique.measures()
+        technique.steps()
     }
 }
 
-impl Measures {
+impl Steps {
     /// Without what changes counts where verdicts stay.
     pub(super) const fn keeping_counts(self) -> Self {
         Self { reach: false, occluders: 0, ..self }

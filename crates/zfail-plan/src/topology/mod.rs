@@ -69,11 +69,11 @@ pub enum TopologyError {
     Rigid,
 }
 
-/// What a triangle is to light and to the depth pass.
+/// What of light a triangle blocks, and where the depth pass draws it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Surface {
+pub enum Blocking {
     /// Light passes through.
-    Through,
+    Nothing,
     /// Blocks light; the depth pass draws it wherever its front is in view, and may cull its back.
     Front,
     /// Blocks light; the depth pass draws both its sides.
@@ -82,10 +82,10 @@ pub enum Surface {
     Partly,
 }
 
-impl From<bool> for Surface {
+impl From<bool> for Blocking {
     /// Whether it blocks light; the depth pass may cull its back.
     fn from(casts: bool) -> Self {
-        if casts { Self::Front } else { Self::Through }
+        if casts { Self::Front } else { Self::Nothing }
     }
 }
 
@@ -137,7 +137,7 @@ impl Topology {
     ///
     /// # Errors
     /// An index out of range, a non-finite coordinate, or more than 2^30 vertices or triangles.
-    pub fn new<S: Into<Surface>>(
+    pub fn new<S: Into<Blocking>>(
         positions: &[[f32; 3]],
         triangles: &[[u32; 3]],
         surface: impl Fn(usize) -> S,
@@ -151,7 +151,7 @@ impl Topology {
     ///
     /// # Errors
     /// As [`Self::new`], and if `alike` has another length than `positions`.
-    pub fn bending<S: Into<Surface>>(
+    pub fn bending<S: Into<Blocking>>(
         positions: &[[f32; 3]],
         triangles: &[[u32; 3]],
         alike: &[u32],
@@ -167,7 +167,7 @@ impl Topology {
         positions: &[[f32; 3]],
         triangles: &[[u32; 3]],
         alike: Option<&[u32]>,
-        surface: impl Fn(usize) -> Surface,
+        surface: impl Fn(usize) -> Blocking,
     ) -> Result<Self, TopologyError> {
         for (what, count) in [("vertices", positions.len()), ("triangles", triangles.len())] {
             if count > 1 << 30 {
@@ -179,7 +179,7 @@ impl Topology {
         let weld::Welded { positions, sources, triangles } = weld::weld(positions, triangles, alike)?;
         let mut uses = Vec::with_capacity(triangles.len() * 3);
         for (t, &[a, b, c]) in triangles.iter().enumerate() {
-            if a != b && b != c && c != a && surface(t) != Surface::Through {
+            if a != b && b != c && c != a && surface(t) != Blocking::Nothing {
                 for (from, to) in [(a, b), (b, c), (c, a)] {
                     let reversed = if from < to { 0 } else { REVERSED };
                     uses.push(([from.min(to), from.max(to)], t as u32 | reversed));

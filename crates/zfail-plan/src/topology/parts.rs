@@ -3,7 +3,7 @@
 //! In: the incidence. Out: one [`Part`] per edge-connected set of triangles, with the fact that decides its weights:
 //! whether it is the boundary of a simple solid.
 
-use super::{NONE, Surface, Topology, closed, embedded};
+use super::{Blocking, NONE, Topology, closed, embedded};
 use crate::bounds::Bounds;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -123,13 +123,13 @@ pub(super) fn find(topology: &mut Topology) {
 
 /// Fills `cover`: a part whose triangles are drawn from both sides hides itself, and so does a solid whose front faces are
 /// drawn and look outward, for a ray leaves it through a back face only where it has entered through a front face.
-pub(super) fn find_cover(topology: &mut Topology, surface: impl Fn(usize) -> Surface) {
+pub(super) fn find_cover(topology: &mut Topology, surface: impl Fn(usize) -> Blocking) {
     let cover = |part: usize| {
-        let all = |test: fn(Surface) -> bool| topology.triangles_of(part).iter().all(|&t| test(surface(t as usize)));
+        let all = |test: fn(Blocking) -> bool| topology.triangles_of(part).iter().all(|&t| test(surface(t as usize)));
         let outward = topology.parts[part].shape == Shape::Solid { inside: 1 };
-        if all(|s| s == Surface::BothSides) {
+        if all(|s| s == Blocking::BothSides) {
             Cover::Everywhere
-        } else if outward && all(|s| matches!(s, Surface::Front | Surface::BothSides)) {
+        } else if outward && all(|s| matches!(s, Blocking::Front | Blocking::BothSides)) {
             Cover::Outside
         } else {
             Cover::Nowhere

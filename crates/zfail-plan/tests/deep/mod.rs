@@ -64,10 +64,10 @@ impl Tower {
             .map(|&world_from_object| Caster { topology: &self.topology, mesh: 1, world_from_object })
             .collect();
         let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
-        let view = View { world_from_view: DAffine3::from_translation(DVec3::Z * 20.0), projection, size: [320, 200] };
+        let view = View::new(DAffine3::from_translation(DVec3::Z * 20.0), projection, [320, 200]);
         let lights = [ShadowLight { kind: self.light, excluded: &[] }];
-        let (measures, counting) = (Technique::EverittKilgard.into(), Counting::Verdict);
-        let frame = Frame { view: &view, casters: &casters, lights: &lights, receivers: &[], measures, counting };
+        let (steps, counting) = (Technique::EverittKilgard.into(), Counting::Verdict);
+        let frame = Frame { view: &view, casters: &casters, lights: &lights, receivers: &[], steps, counting };
         let mut planner = Planner::new();
         planner.plan(&frame).unwrap();
         planner.last().clone()

@@ -54,6 +54,8 @@ struct Frame {
     per_ground_radius: f32,
     // View space: the middle of the ground.
     ground: vec3<f32>,
+    // NDC: where the view axis meets the image.
+    window_offset: vec2<f32>,
     // The first lights once more: uniforms are read once for many pixels.
     lights: array<Light, UNROLLED>,
 }
@@ -65,7 +67,7 @@ const UNROLLED: u32 = 4u;
 
 // The view-space point in a pixel's centre at a distance along the view axis.
 fn view_position(pixel: vec2<f32>, depth: f32) -> vec3<f32> {
-    let ndc = vec2<f32>(2.0, -2.0) * (pixel / frame.size - 0.5);
+    let ndc = vec2<f32>(2.0, -2.0) * (pixel / frame.size - 0.5) - frame.window_offset;
     return vec3<f32>(ndc * frame.view_per_ndc * mix(depth, 1.0, frame.orthographic), -depth);
 }
 

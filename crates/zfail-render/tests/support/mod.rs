@@ -23,11 +23,11 @@ pub fn plain() -> Settings {
 pub fn look(eye: DVec3, target: DVec3, size: [u32; 2]) -> View {
     let back = (eye - target).normalize();
     let right = DVec3::Y.cross(back).try_normalize().unwrap_or(DVec3::X);
-    View {
-        world_from_view: DAffine3 { matrix3: DMat3::from_cols(right, back.cross(right), back), translation: eye },
-        projection: Projection::Perspective { yfov: 1.0, near: 0.01, far: None },
+    View::new(
+        DAffine3 { matrix3: DMat3::from_cols(right, back.cross(right), back), translation: eye },
+        Projection::Perspective { yfov: 1.0, near: 0.01, far: None },
         size,
-    }
+    )
 }
 
 /// A rough dielectric of one colour.

@@ -5,7 +5,7 @@ use super::sight::{Blocks, Lens, Sight};
 use crate::{Ground, Instance, Material, Scene};
 use glam::DVec3;
 use zfail_plan::bounds::Bounds;
-use zfail_plan::topology::Surface;
+use zfail_plan::topology::Blocking;
 
 /// Whether there is a ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -40,10 +40,10 @@ pub(super) fn has_floor(posed: Posed<'_>, bounds: &Bounds) -> bool {
                 continue;
             }
             let up = side * (b - a).cross(c - a).y;
-            let up = match posed.scene.triangle_surface(placed.index, t) {
-                Surface::Through => 0.0,
-                Surface::Front => up.max(0.0),
-                Surface::BothSides | Surface::Partly => up.abs(),
+            let up = match posed.scene.triangle_blocking(placed.index, t) {
+                Blocking::Nothing => 0.0,
+                Blocking::Front => up.max(0.0),
+                Blocking::BothSides | Blocking::Partly => up.abs(),
             };
             let seen = (0..POINTS).filter(|&k| above.reaches(spread([a, b, c], k))).count();
             area += up * seen as f64 / POINTS as f64;

@@ -3,7 +3,7 @@
 use crate::{Mesh, Pose, Scene};
 use glam::{DAffine3, DVec3};
 use zfail_plan::bounds::Bounds;
-use zfail_plan::topology::Surface;
+use zfail_plan::topology::Blocking;
 
 /// A scene, and where everything is.
 #[derive(Clone, Copy)]
@@ -77,15 +77,15 @@ impl<'a> Posed<'a> {
             // A mirrored instance turns its triangles over.
             let side = placed.world_from_object.matrix3.determinant().signum();
             for t in (skip..count).step_by(step) {
-                let surface = self.scene.triangle_surface(placed.index, t);
+                let surface = self.scene.triangle_blocking(placed.index, t);
                 let [a, b, c] = placed.triangle(t);
                 let cross = side * (b - a).cross(c - a);
                 let area = 0.5 * cross.length() * step as f64 / each as f64;
                 let normal = cross.try_normalize();
-                let Some(normal) = normal.filter(|_| surface != Surface::Through) else { continue };
+                let Some(normal) = normal.filter(|_| surface != Blocking::Nothing) else { continue };
                 for k in 0..each {
                     let point = spread([a, b, c], k);
-                    samples.push(Sample { point, normal, area, both_sides: surface != Surface::Front });
+                    samples.push(Sample { point, normal, area, both_sides: surface != Blocking::Front });
                 }
             }
             skip = (skip + step - count % step) % step;

@@ -5,7 +5,7 @@ use super::posed::{Posed, Sample};
 use crate::Camera;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use zfail_plan::bounds::Bounds;
-use zfail_plan::topology::Surface;
+use zfail_plan::topology::Blocking;
 use zfail_plan::view::Projection;
 
 /// Pixels along a side.
@@ -138,11 +138,11 @@ impl Sight {
             // A mirrored instance turns its triangles over.
             let mirrored = placed.world_from_object.matrix3.determinant() < 0.0;
             for t in 0..placed.mesh.triangles.len() {
-                let surface = posed.scene.triangle_surface(placed.index, t);
-                if surface == Surface::Through {
+                let surface = posed.scene.triangle_blocking(placed.index, t);
+                if surface == Blocking::Nothing {
                     continue;
                 }
-                let fronts_only = blocks == Blocks::Eyes && surface == Surface::Front;
+                let fronts_only = blocks == Blocks::Eyes && surface == Blocking::Front;
                 let corners =
                     placed.mesh.triangles[t].map(|v| scaled_from_object.transform_point3(placed.position(v)).as_vec3());
                 sight.triangle(corners, fronts_only, mirrored, near);

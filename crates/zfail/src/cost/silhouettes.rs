@@ -4,7 +4,7 @@
 //! idle. Nothing is drawn: both ways draw much the same.
 
 use super::CostModel;
-use crate::{Caster, Counting, Frame, LightKind, Measures, MeshId, ShadowLight, Shadows, Silhouettes, Technique};
+use crate::{Caster, Counting, Frame, LightKind, MeshId, ShadowLight, Shadows, Silhouettes, Steps, Technique};
 use glam::{DAffine3, DVec3};
 use std::f64::consts::TAU;
 use std::time::Instant;
@@ -58,19 +58,19 @@ fn measure_mesh(
     silhouettes: Silhouettes,
 ) -> Option<f64> {
     let casters = [Caster { mesh, world_from_object: DAffine3::IDENTITY }];
-    let view = View {
-        world_from_view: DAffine3::from_translation(5.0 * DVec3::Z),
-        projection: Projection::Perspective { yfov: 1.0, near: 0.1, far: None },
-        size: [64; 2],
-    };
-    let measures = Measures { silhouettes, fan: true, ..Technique::EverittKilgard.measures() };
+    let view = View::new(
+        DAffine3::from_translation(5.0 * DVec3::Z),
+        Projection::Perspective { yfov: 1.0, near: 0.1, far: None },
+        [64; 2],
+    );
+    let steps = Steps { silhouettes, fan: true, ..Technique::EverittKilgard.steps() };
     let mut least = f64::INFINITY;
     for frame in 0..FRAMES {
         let position = DVec3::new(2.0 + 1e-3 * f64::from(frame), 5.0, 3.0);
         let lights = [ShadowLight { kind: LightKind::Point { position, range: f64::INFINITY }, excluded: &[] }];
         // Counts, not verdicts: no proof that they do not wrap, which either way may need or may have.
         let counting = Counting::Raw;
-        let frame = Frame { view: &view, casters: &casters, lights: &lights, receivers: &[], measures, counting };
+        let frame = Frame { view: &view, casters: &casters, lights: &lights, receivers: &[], steps, counting };
         let start = Instant::now();
         shadows.prepare(device, queue, &frame).ok()?;
         // What is only written goes to the device with the next submission.

@@ -3,7 +3,7 @@
 
 use wgpu::util::DeviceExt;
 use zfail::glam::{DAffine3, DVec3};
-use zfail::{Bounds, Caster, Counting, Frame, FramePlan, LightKind, Measures, MeshId, ShadowLight, Shadows, Target};
+use zfail::{Bounds, Caster, Counting, Frame, FramePlan, LightKind, MeshId, ShadowLight, Shadows, Steps, Target};
 use zfail::{Technique, View};
 
 /// A mesh as tests write it.
@@ -40,7 +40,7 @@ pub struct Setup {
     pub depth_stencil: wgpu::TextureFormat,
     /// Whether the device may clamp depth by itself.
     pub clip_control: bool,
-    pub measures: Measures,
+    pub steps: Steps,
     pub counting: Counting,
     /// What depth is cleared to: 0 is nothing in sight, 1 is a surface right at the near plane.
     pub depth_clear: f32,
@@ -54,7 +54,7 @@ impl Default for Setup {
             samples: 1,
             depth_stencil: wgpu::TextureFormat::Depth32FloatStencil8,
             clip_control: true,
-            measures: Technique::EverittKilgard.measures(),
+            steps: Technique::EverittKilgard.steps(),
             counting: Counting::Raw,
             depth_clear: 0.0,
             draw_depth: true,
@@ -123,8 +123,8 @@ pub fn draw(
         Bounds::of(corners)
     };
     let receivers: Vec<Bounds> = meshes.iter().map(placed).collect();
-    let (measures, counting) = (setup.measures, setup.counting);
-    let frame = Frame { view, casters: &casters, lights: &lights, receivers: &receivers, measures, counting };
+    let (steps, counting) = (setup.steps, setup.counting);
+    let frame = Frame { view, casters: &casters, lights: &lights, receivers: &receivers, steps, counting };
     shadows.prepare(device, queue, &frame).expect("plan");
     shadows.edit_plan(edit);
 

@@ -20,7 +20,7 @@ impl Random {
 
 fn view() -> View {
     let projection = Projection::Perspective { yfov: 1.2, near: NEAR, far: None };
-    View { world_from_view: DAffine3::IDENTITY, projection, size: SIZE }
+    View::new(DAffine3::IDENTITY, projection, SIZE)
 }
 
 fn sight() -> Sight {

@@ -9,7 +9,7 @@ use zfail_render::{Settings, Silhouettes, Technique, Tiles};
 
 /// Who does the work of a technique.
 #[derive(Args, Clone, Copy, Debug)]
-pub struct MeasureArgs {
+pub struct StepArgs {
     /// Count the sides of volumes by tiles in a compute shader: never, or always, wherever z-pass counts them. Needs
     /// technique auto and one sample per pixel.
     #[arg(long, value_name = "never|always", default_value = "never", hide_possible_values = true)]
@@ -32,21 +32,21 @@ enum SilhouettesArg {
     Device,
 }
 
-impl MeasureArgs {
+impl StepArgs {
     /// Whether `technique` takes the steps, with `samples` per pixel.
     ///
     /// # Errors
     /// If a step is asked for that would not be taken.
     pub fn check(self, technique: Technique, samples: u32) -> Result<(), Error> {
-        let measures = technique.measures();
+        let steps = technique.steps();
         let tiles = self.tiles == TilesArg::Always;
-        if tiles && measures.tiles == Tiles::Never {
+        if tiles && steps.tiles == Tiles::Never {
             return Err(Error::usage(format!("--tiles always needs --technique auto; '{technique}' rasterises")));
         }
         if tiles && samples > 1 {
             return Err(Error::usage(format!("--tiles always needs --samples 1, not {samples}")));
         }
-        if self.silhouettes == SilhouettesArg::Device && measures.silhouettes == Silhouettes::Cpu {
+        if self.silhouettes == SilhouettesArg::Device && steps.silhouettes == Silhouettes::Cpu {
             let message = format!("--silhouettes device needs --technique auto; '{technique}' finds them on the CPU");
             return Err(Error::usage(message));
         }
@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn a_step_that_would_not_be_taken_is_refused() {
-        let args = |tiles, silhouettes| MeasureArgs { tiles, silhouettes };
+        let args = |tiles, silhouettes| StepArgs { tiles, silhouettes };
         let [neither, tiles, device] = [
             args(TilesArg::Never, SilhouettesArg::Cpu),
             args(TilesArg::Always, SilhouettesArg::Cpu),
