@@ -9,7 +9,7 @@
 use std::{env, error::Error};
 use zfail_exact::kinds::Kind;
 use zfail_plan::glam::{DMat4, DVec2, DVec3, DVec4};
-use zfail_plan::plan::{Caster, Counting, Draw, Frame, FramePlan, Planner, ShadowLight, Technique};
+use zfail_plan::plan::{Caster, Counting, Draw, FramePlan, Input, Planner, ShadowLight, Technique};
 use zfail_plan::view::View;
 use zfail_scene::{Instance, Scene};
 
@@ -68,7 +68,7 @@ fn list(scene: &Scene, view: &View, centre: DVec2, light: usize) -> Result<(), B
     let technique: Technique = env::var("ZFAIL_TECHNIQUE").map_or(Ok(Technique::EverittKilgard), |t| t.parse())?;
     let lights = [ShadowLight { kind: scene.lights[light].kind, excluded: &[] }];
     let (steps, counting) = (technique.steps(), Counting::Raw);
-    let frame = Frame { view, casters: &casters, lights: &lights, receivers: &[], steps, counting };
+    let frame = Input { view, casters: &casters, lights: &lights, receivers: &[], steps, counting };
     let mut planner = Planner::new();
     let plan = planner.plan(&frame)?;
 

@@ -6,7 +6,7 @@ use crate::Error;
 use crate::model::Model;
 use crate::volumes::{self, Triangle};
 use zfail_plan::glam::DVec4;
-use zfail_plan::plan::{Counting, Frame, FramePlan, Planner, ShadowLight, Silhouettes, Steps, Technique};
+use zfail_plan::plan::{Counting, FramePlan, Input, Planner, ShadowLight, Silhouettes, Steps, Technique};
 use zfail_plan::view::{Projection, View};
 
 /// Two planners, so that each finds its last frame as it left it.
@@ -62,6 +62,6 @@ fn plan<'p>(
         .map(|(&l, excluded)| ShadowLight { kind: model.lights[l].kind, excluded })
         .collect();
     let receivers = &model.receivers(view);
-    let frame = Frame { view, casters: &model.casters(), lights: &lights, receivers, steps, counting };
+    let frame = Input { view, casters: &model.casters(), lights: &lights, receivers, steps, counting };
     Ok(planner.plan(&frame)?)
 }

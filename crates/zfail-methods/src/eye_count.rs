@@ -41,7 +41,7 @@ fn layers(topology: &Topology, weights: &[i8], eye: DVec3, light: DVec4) -> u32 
         (along.dot((lo - eye).cross(hi - eye)) >= 0.0) == (from < to)
     };
     let crossed = |t: usize| {
-        let [a, b, c] = topology.triangles[t];
+        let [a, b, c] = topology.triangles()[t];
         let side = passes(a, b);
         let [p, q, r] = topology.corners(t);
         let normal = (q - p).cross(r - p);

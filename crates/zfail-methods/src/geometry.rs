@@ -122,9 +122,9 @@ impl Mesh {
 
     fn upload(device: &wgpu::Device, topology: Topology, visible: Vec<(Range<u32>, bool)>) -> Self {
         let casting: Vec<[u32; 3]> = topology
-            .triangles
+            .triangles()
             .iter()
-            .zip(&topology.part_of)
+            .zip(topology.part_of())
             .filter(|(_, part)| **part != NONE)
             .map(|(t, _)| *t)
             .collect();
@@ -137,8 +137,8 @@ impl Mesh {
             device.create_buffer_init(&BufferInitDescriptor { label: Some("mesh"), contents, usage: usage | traced })
         };
         Self {
-            positions: buffer(bytemuck::cast_slice(&topology.positions), wgpu::BufferUsages::VERTEX),
-            triangles: buffer(bytemuck::cast_slice(&topology.triangles), wgpu::BufferUsages::INDEX),
+            positions: buffer(bytemuck::cast_slice(topology.positions()), wgpu::BufferUsages::VERTEX),
+            triangles: buffer(bytemuck::cast_slice(topology.triangles()), wgpu::BufferUsages::INDEX),
             casting: buffer(bytemuck::cast_slice(&casting), wgpu::BufferUsages::INDEX),
             casting_len: 3 * casting.len() as u32,
             visible,

@@ -9,10 +9,10 @@ use crate::volumes::{Draw, Volumes};
 use crate::{Error, Figures};
 use std::time::Instant;
 use zfail_plan::glam::{DAffine3, Vec3};
-use zfail_plan::plan::{self, Counting, FramePlan, ShadowLight, Steps};
+use zfail_plan::plan::{self, FramePlan, ShadowLight, Steps};
 use zfail_plan::view::View;
 use zfail_render::Gpu;
-use zfail_render::zfail::{Caster, Frame, Shadows, Target};
+use zfail_render::zfail::{Caster, Frame, Shadows, Target, low_level};
 use zfail_scene::{Instance, Light};
 
 /// What `light` reaches, by these steps.
@@ -24,37 +24,36 @@ pub fn shadow(
     light: &Light,
     steps: Steps,
 ) -> Result<(Vec<u8>, Figures), Error> {
-    let mut shadows = Shadows::new(&gpu.device);
+    let mut shadows = Shadows::new(&gpu.device, &gpu.queue);
     let mut meshes = vec![None; geometry.meshes.len()];
     let mut casters = Vec::new();
     for (_, instance, mesh) in geometry.casters(light) {
         let id = match meshes[instance.mesh] {
             Some(id) => id,
-            None => shadows.add_topology(&gpu.device, &gpu.queue, mesh.topology.clone())?,
+            None => shadows.add_topology(mesh.topology.clone())?,
         };
         meshes[instance.mesh] = Some(id);
-        casters.push(Caster { mesh: id, world_from_object: instance.world_from_object });
+        casters.push(Caster::new(id, instance.world_from_object));
     }
     let target = Target { colors: &[], depth_stencil: gpu.depth_stencil, samples: 1 };
-    let pipelines = shadows.pipelines(&gpu.device, &target);
+    let pipelines = shadows.pipelines(&target);
 
     let start = Instant::now();
     // Who ignores the light is not among the casters.
-    let lights = &[ShadowLight { kind: light.kind, excluded: &[] }];
+    let lights = &[ShadowLight::new(light.kind)];
     let receivers = &[geometry.bounds];
-    let counting = Counting::Verdict;
-    let frame = Frame { view, casters: &casters, lights, receivers, steps, counting };
-    shadows.prepare(&gpu.device, &gpu.queue, &frame)?;
+    let prepared = shadows.prepare(&Frame::new(view, &casters, lights).receivers(receivers).steps(steps))?;
     let planning_ms = start.elapsed().as_secs_f64() * 1e3;
 
     let placements = stage::placements(&gpu.device, &geometry.placements(view));
     let (mask, render_ms) = stage.play(gpu, geometry, view, 0, 0.0, &placements, |pass| {
-        shadows.draw(pass, &pipelines, 0);
+        prepared.draw(pass, &pipelines, 0);
     })?;
-    let drawn = drawn(shadows.plan(), &geometry.casters(light).collect::<Vec<_>>());
+    let plan = low_level::plan(&prepared);
+    let drawn = drawn(plan, &geometry.casters(light).collect::<Vec<_>>());
     let fragments = stage.fragments(gpu, geometry, view, &drawn)?;
     let triangles = drawn.triangles();
-    let passes = 2 + shadows.plan().lights.first().map_or(0, over_volumes);
+    let passes = 2 + plan.lights.first().map_or(0, over_volumes);
     Ok((mask, Figures { triangles, vertices: 3 * triangles, fragments, passes, planning_ms, render_ms }))
 }
 
@@ -76,7 +75,7 @@ fn drawn(plan: &FramePlan, casters: &[(usize, &Instance, &Mesh)]) -> Volumes {
             Some((other, first)) if same(other) => first,
             _ => {
                 let first = volumes.vertices.len() as i32;
-                volumes.vertices.extend(mesh.topology.positions.iter().flat_map(|&position| {
+                volumes.vertices.extend(mesh.topology.positions().iter().flat_map(|&position| {
                     let p = Vec3::from(position);
                     [p.extend(1.0).to_array(), draw.extruded(p.as_dvec3()).as_vec4().to_array()]
                 }));

@@ -93,8 +93,8 @@ impl Volumes {
         volume::visible_twins(topology, object_eye(instance, view), &mut visible);
         volume::cap_weights(topology, &weights, &visible, &mut cap);
         if faces == Faces::Sides {
-            for (weight, &part) in cap.iter_mut().zip(&topology.part_of) {
-                if part != NONE && topology.parts[part as usize].cover != Cover::Nowhere {
+            for (weight, &part) in cap.iter_mut().zip(topology.part_of()) {
+                if part != NONE && topology.parts()[part as usize].cover != Cover::Nowhere {
                     *weight = 0;
                 }
             }
@@ -114,7 +114,7 @@ impl Volumes {
             Extrusion::Infinite => (p * at.w - at.truncate()).extend(0.0),
             Extrusion::By(distance) => throw_by(distance, p, at, instance),
         };
-        self.vertices.extend(topology.positions.iter().flat_map(|&position| {
+        self.vertices.extend(topology.positions().iter().flat_map(|&position| {
             let p = Vec3::from(position);
             [p.extend(1.0).to_array(), throw(p).to_array()]
         }));

@@ -10,7 +10,7 @@ use glam::{DAffine3, DVec3, Vec4};
 use std::hint::black_box;
 use zfail_plan::casting::{self, Casting};
 use zfail_plan::light::LightKind;
-use zfail_plan::plan::{Caster, Counting, Frame, Planner, ShadowLight, Technique};
+use zfail_plan::plan::{Caster, Counting, Input, Planner, ShadowLight, Technique};
 use zfail_plan::topology::Topology;
 use zfail_plan::view::{Projection, View};
 use zfail_plan::volume;
@@ -72,7 +72,7 @@ fn plan(c: &mut Criterion) {
                 time += if moving { 0.01 } else { 0.0 };
                 let kind = LightKind::Point { position: DVec3::new(14.0 + time, 9.0, 14.0), range: f64::INFINITY };
                 let lights = [ShadowLight { kind, excluded: &[] }];
-                let frame = Frame {
+                let frame = Input {
                     view: &view,
                     casters: &casters,
                     lights: &lights,

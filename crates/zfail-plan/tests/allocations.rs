@@ -5,7 +5,7 @@ mod shapes;
 use glam::{DAffine3, DVec3};
 use zfail_plan::bounds::Bounds;
 use zfail_plan::light::LightKind;
-use zfail_plan::plan::{Caster, Counting, Frame, Planner, ShadowLight, Technique};
+use zfail_plan::plan::{Caster, Counting, Input, Planner, ShadowLight, Technique};
 use zfail_plan::topology::Topology;
 use zfail_plan::view::{Projection, View};
 
@@ -21,7 +21,7 @@ fn plan(planner: &mut Planner, casters: &[Caster<'_>], k: u32, moving: bool) {
         ShadowLight { kind: LightKind::Directional { direction: DVec3::NEG_Y }, excluded: &[] },
     ];
     let receivers = [Bounds { min: DVec3::new(-30.0, -2.0, -30.0), max: DVec3::new(30.0, 2.0, 30.0) }];
-    let frame = Frame {
+    let frame = Input {
         view: &view,
         casters,
         lights: &lights,

@@ -79,7 +79,7 @@ proptest! {
         let topology = Topology::new(&positions, &triangles, |_| true).unwrap();
         for rule in [Casting::Front, Casting::Back, Casting::Double] {
             let mut c = Vec::new();
-            casting::weights(&topology, &vec![rule; topology.parts.len()], light, &mut c);
+            casting::weights(&topology, &vec![rule; topology.parts().len()], light, &mut c);
             let mut indices = Vec::new();
             let volume = volume::build(&topology, &c, &c, light.w == 0.0, &mut indices);
             prop_assert_eq!(open_edges(&indices, &volume, light.w == 0.0), 0);
@@ -91,7 +91,7 @@ proptest! {
     fn any_soup_is_closed_under_random_weights((positions, triangles) in soup(), weights in prop::collection::vec(-1_i8..2, 40)) {
         let topology = Topology::new(&positions, &triangles, |_| true).unwrap();
         let degenerate = |t: &[u32; 3]| t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-        let c: Vec<i8> = topology.triangles.iter().zip(weights).map(|(t, c)| if degenerate(t) { 0 } else { c }).collect();
+        let c: Vec<i8> = topology.triangles().iter().zip(weights).map(|(t, c)| if degenerate(t) { 0 } else { c }).collect();
         let mut indices = Vec::new();
         let volume = volume::build(&topology, &c, &c, false, &mut indices);
         prop_assert_eq!(open_edges(&indices, &volume, false), 0);
@@ -115,7 +115,7 @@ proptest! {
         prop_assume!(along.length() > 0.1);
         for rule in [Casting::Front, Casting::Back, Casting::Double] {
             let mut c = Vec::new();
-            casting::weights(&topology, &vec![rule; topology.parts.len()], light, &mut c);
+            casting::weights(&topology, &vec![rule; topology.parts().len()], light, &mut c);
             let mut indices = Vec::new();
             let volume = volume::build(&topology, &c, &c, light.w == 0.0, &mut indices);
             let expected = layers(&topology, &c, light, at);
@@ -130,7 +130,7 @@ fn twins_cast_in_the_order_of_the_visible_one() {
     // A sheet with a back: the same triangle twice, wound against itself and starting elsewhere, and once more.
     let positions = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]];
     let topology = Topology::new(&positions, &[[0, 1, 2], [0, 2, 1], [1, 2, 0]], |_| true).unwrap();
-    assert_eq!(topology.twins, [[0, 1, 2]]);
+    assert_eq!(topology.twins(), [[0, 1, 2]]);
     let light = Vec4::new(0.5, 0.5, 3.0, 1.0);
     let mut c = Vec::new();
     casting::weights(&topology, &[Casting::Double], light, &mut c);

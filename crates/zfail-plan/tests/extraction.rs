@@ -5,7 +5,7 @@ mod shapes;
 use glam::{DAffine3, DVec3};
 use shapes::Soup;
 use zfail_plan::light::LightKind;
-use zfail_plan::plan::{Caster, Counting, Frame, FramePlan, Planner, ShadowLight, Silhouettes, Steps, Technique};
+use zfail_plan::plan::{Caster, Counting, FramePlan, Input, Planner, ShadowLight, Silhouettes, Steps, Technique};
 use zfail_plan::topology::Topology;
 use zfail_plan::view::{Projection, View};
 
@@ -45,7 +45,7 @@ fn plan<'p>(
     let casters: Vec<Caster<'_>> = topologies.iter().enumerate().map(place).collect();
     let lights = [ShadowLight { kind: LightKind::Point { position: light, range: f64::INFINITY }, excluded: &[] }];
     let steps = Steps { silhouettes, off_screen: false, ..Technique::Mcguire.steps() };
-    let frame = Frame { view, casters: &casters, lights: &lights, receivers: &[], steps, counting: Counting::Verdict };
+    let frame = Input { view, casters: &casters, lights: &lights, receivers: &[], steps, counting: Counting::Verdict };
     planner.plan_extracting(&frame, &vec![true; casters.len()]).unwrap()
 }
 

@@ -42,7 +42,7 @@ fn directions(count: u32) -> impl Iterator<Item = DVec3> {
 fn spheres(topology: &Topology, light: DVec3) -> i32 {
     let mut c = Vec::new();
     let at = light.as_vec3();
-    casting::weights(topology, &vec![Casting::Front; topology.parts.len()], at.extend(1.0), &mut c);
+    casting::weights(topology, &vec![Casting::Front; topology.parts().len()], at.extend(1.0), &mut c);
     let [mut cap, mut fan] = [Vec::new(), Vec::new()];
     volume::dark_cap(topology, &c, &mut cap);
     volume::sides(topology, &c, false, &mut fan);

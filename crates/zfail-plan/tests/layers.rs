@@ -6,7 +6,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use shapes::Soup;
 use zfail_plan::casting::{self, Casting};
 use zfail_plan::light::LightKind;
-use zfail_plan::stack::{Caster, Frame, Outline, Work};
+use zfail_plan::stack::{Caster, Chart, Outline, Work};
 use zfail_plan::topology::Topology;
 
 /// SplitMix64, from -1 to 1.
@@ -65,7 +65,7 @@ impl Shape {
         let topology = Topology::new(&soup.0, &soup.1, |_| true).unwrap();
         let from = casting::object_light(&light, &DMat3::IDENTITY, DVec3::ZERO).unwrap();
         let mut weights = Vec::new();
-        casting::weights(&topology, &vec![Casting::Double; topology.parts.len()], from, &mut weights);
+        casting::weights(&topology, &vec![Casting::Double; topology.parts().len()], from, &mut weights);
         let mut edges = Vec::new();
         topology.boundary(&weights, |[lo, hi], times| {
             let edge = if times > 0 { [lo, hi] } else { [hi, lo] };
@@ -76,7 +76,7 @@ impl Shape {
 
     /// What the search says, with these silhouettes, and what it cost.
     fn search(&self, edges: &[[u32; 2]], limit: usize) -> (bool, u64) {
-        let mut outline = Outline::new(Frame::new(self.light.homogeneous(), &self.topology.bounds()));
+        let mut outline = Outline::new(Chart::new(self.light.homogeneous(), &self.topology.bounds()));
         let light = casting::object_light(&self.light, &DMat3::IDENTITY, DVec3::ZERO).unwrap();
         let world_from_object = &DAffine3::IDENTITY;
         let caster = Caster { topology: &self.topology, weights: &self.weights, world_from_object, light };
@@ -114,7 +114,7 @@ impl Shape {
 
     /// The most layers found by trying, also close to vertices, where most triangles meet.
     fn most(&self, random: &mut Random, tries: u32) -> usize {
-        let vertices = self.topology.positions.len() as f64;
+        let vertices = self.topology.positions().len() as f64;
         let through = (0..tries).map(|i| {
             let near = self.topology.position(((random.next() * 0.5 + 0.5) * (vertices - 1.0)).round() as u32);
             match i % 3 {
@@ -182,7 +182,7 @@ fn a_search_ends_when_its_work_is_done() {
     let mut random = Random(3);
     let shape = Shape::new(&soup(&mut random, 3000), lights()[0]);
     let most = shape.most(&mut random, 100);
-    let mut outline = Outline::new(Frame::Sphere);
+    let mut outline = Outline::new(Chart::Sphere);
     let light = casting::object_light(&shape.light, &DMat3::IDENTITY, DVec3::ZERO).unwrap();
     let world_from_object = &DAffine3::IDENTITY;
     let caster = Caster { topology: &shape.topology, weights: &shape.weights, world_from_object, light };

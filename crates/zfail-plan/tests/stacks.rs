@@ -7,7 +7,7 @@ use shapes::Soup;
 use zfail_plan::bounds::Bounds;
 use zfail_plan::casting::{self, Casting};
 use zfail_plan::light::LightKind;
-use zfail_plan::plan::{Caster, Counting, Frame, FramePlan, Planner, ShadowLight, Technique};
+use zfail_plan::plan::{Caster, Counting, FramePlan, Input, Planner, ShadowLight, Technique};
 use zfail_plan::stack::{self, Body, Outline, Work};
 use zfail_plan::topology::Topology;
 use zfail_plan::view::{Projection, View};
@@ -28,8 +28,8 @@ fn outline(soup: &Soup, light: LightKind) -> (Topology, Vec<i8>, Outline) {
     let topology = Topology::new(&soup.0, &soup.1, |_| true).unwrap();
     let from = casting::object_light(&light, &DMat3::IDENTITY, DVec3::ZERO).unwrap();
     let mut weights = Vec::new();
-    casting::weights(&topology, &vec![Casting::Double; topology.parts.len()], from, &mut weights);
-    let mut outline = Outline::new(stack::Frame::new(light.homogeneous(), &topology.bounds()));
+    casting::weights(&topology, &vec![Casting::Double; topology.parts().len()], from, &mut weights);
+    let mut outline = Outline::new(stack::Chart::new(light.homogeneous(), &topology.bounds()));
     let mut edges = Vec::new();
     topology.boundary(&weights, |[lo, hi], times| {
         let edge = if times > 0 { [lo, hi] } else { [hi, lo] };
@@ -92,7 +92,7 @@ fn plan(meshes: &[Topology], light: LightKind, counting: Counting) -> FramePlan 
     let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
     let view = View::new(DAffine3::IDENTITY, projection, [64, 64]);
     let lights = [ShadowLight { kind: light, excluded: &[] }];
-    let frame = Frame {
+    let frame = Input {
         view: &view,
         casters: &casters,
         lights: &lights,
@@ -150,7 +150,7 @@ fn a_change_of_projection_keeps_deep_stacks_divided() {
     ] {
         let view = View::new(DAffine3::IDENTITY, projection, [64, 64]);
         let (steps, counting) = (Technique::Auto.into(), Counting::Verdict);
-        let frame = Frame { view: &view, casters: &casters, lights: &lights, receivers: &[], steps, counting };
+        let frame = Input { view: &view, casters: &casters, lights: &lights, receivers: &[], steps, counting };
         let batches = planner.plan(&frame).unwrap().lights[0].batches.len();
         assert!(batches >= 1000 / 120, "{projection:?}: {batches}");
     }
@@ -158,7 +158,7 @@ fn a_change_of_projection_keeps_deep_stacks_divided() {
 
 #[test]
 fn bounds_without_extent_do_no_harm() {
-    let frame = stack::Frame::new(sun().homogeneous(), &Bounds { min: DVec3::ZERO, max: DVec3::ZERO });
+    let frame = stack::Chart::new(sun().homogeneous(), &Bounds { min: DVec3::ZERO, max: DVec3::ZERO });
     let bodies = vec![Body::new([DVec3::ZERO; 8], 1, sun().homogeneous(), &frame); 5];
     assert!(!stack::are_within(&bodies, &frame, 4, &mut Work::of(1 << 20)));
     assert!(stack::are_within(&bodies, &frame, 5, &mut Work::of(0)), "what needs no search needs no work");
@@ -175,7 +175,7 @@ fn a_change_in_the_number_of_lights_keeps_deep_stacks_divided() {
     for count in [1, 2, 1] {
         let (lights, counting) = (&lights[..count], Counting::Verdict);
         let steps = Technique::EverittKilgard.into();
-        let frame = Frame { view: &view, casters: &casters, lights, receivers: &[], steps, counting };
+        let frame = Input { view: &view, casters: &casters, lights, receivers: &[], steps, counting };
         let batches = planner.plan(&frame).unwrap().lights[0].batches.len();
         assert!(batches >= 1000 / 120, "{count} lights: {batches}");
     }
@@ -194,7 +194,7 @@ fn the_layers_of_bodies_add_up_where_they_hide_one_another() {
         let tower: Vec<DVec3> = (0..20).map(|i| DVec3::new(0.0, -f64::from(i), 0.0)).collect();
         let within = |centers: &[DVec3], limit| {
             let bounds = Bounds::of(centers.iter().flat_map(|&center| corners(center, 0.2)));
-            let frame = stack::Frame::new(light, &bounds);
+            let frame = stack::Chart::new(light, &bounds);
             let body = |&center: &DVec3| Body::new(corners(center, 0.2), 10, light, &frame);
             stack::are_within(&centers.iter().map(body).collect::<Vec<_>>(), &frame, limit, &mut Work::of(1 << 20))
         };
@@ -219,7 +219,7 @@ fn batches_of_rings(count: u32, step: DVec3, light: LightKind) -> usize {
     let view = View::new(world_from_view, projection, [64, 64]);
     let lights = [ShadowLight { kind: light, excluded: &[] }];
     let (steps, counting) = (Technique::EverittKilgard.into(), Counting::Verdict);
-    let frame = Frame { view: &view, casters: &casters, lights: &lights, receivers: &[], steps, counting };
+    let frame = Input { view: &view, casters: &casters, lights: &lights, receivers: &[], steps, counting };
     Planner::new().plan(&frame).unwrap().lights[0].batches.len()
 }
 

@@ -12,8 +12,8 @@ fn topology((positions, triangles): &Soup) -> Topology {
 
 fn only_shape(soup: &Soup) -> Shape {
     let t = topology(soup);
-    assert_eq!(t.parts.len(), 1, "one part expected");
-    t.parts[0].shape
+    assert_eq!(t.parts().len(), 1, "one part expected");
+    t.parts()[0].shape
 }
 
 #[test]
@@ -43,7 +43,7 @@ fn signed_zeros_weld() {
         }
     }
     let indices: Vec<[u32; 3]> = (0..12).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-    assert_eq!(topology(&(loose, indices)).positions.len(), 8);
+    assert_eq!(topology(&(loose, indices)).positions().len(), 8);
 }
 
 #[test]
@@ -55,7 +55,7 @@ fn a_torus_too_thick_for_its_hole_meets_itself() {
 fn a_missing_triangle_opens_a_part_and_leaves_its_neighbour_closed() {
     let mut soup = joined(cube(), cube(), [5.0, 0.0, 0.0]);
     soup.1.remove(3);
-    let shapes: Vec<Shape> = topology(&soup).parts.iter().map(|p| p.shape).collect();
+    let shapes: Vec<Shape> = topology(&soup).parts().iter().map(|p| p.shape).collect();
     assert_eq!(shapes, [Shape::Open, Shape::Solid { inside: 1 }]);
 }
 
@@ -69,8 +69,8 @@ fn one_flipped_triangle_unbalances_its_part() {
 #[test]
 fn cubes_that_share_an_edge_are_one_balanced_part() {
     let t = topology(&joined(cube(), cube(), [2.0, 2.0, 0.0]));
-    assert_eq!(t.parts.len(), 1);
-    assert_eq!(t.parts[0].shape, Shape::Solid { inside: 1 });
+    assert_eq!(t.parts().len(), 1);
+    assert_eq!(t.parts()[0].shape, Shape::Solid { inside: 1 });
     assert_eq!(t.edge_counts(), [0, 34, 1]);
 }
 
@@ -81,7 +81,7 @@ fn a_fin_is_a_fan_of_three() {
     soup.1.push([2, 6, 8]);
     let t = topology(&soup);
     assert_eq!(t.edge_counts(), [2, 17, 1]);
-    assert_eq!(t.parts[0].shape, Shape::Open);
+    assert_eq!(t.parts()[0].shape, Shape::Open);
 }
 
 #[test]
@@ -148,7 +148,7 @@ fn bad_input_is_named() {
 
 #[test]
 fn an_empty_mesh_is_no_error() {
-    assert!(topology(&(Vec::new(), Vec::new())).parts.is_empty());
+    assert!(topology(&(Vec::new(), Vec::new())).parts().is_empty());
 }
 
 /// A tetrahedron with every corner of every triangle a vertex of its own, and which of them are alike.
@@ -163,19 +163,19 @@ fn loose_tetrahedron() -> (Soup, Vec<u32>) {
 fn a_mesh_that_bends_keeps_its_incidence() {
     let ((mut positions, triangles), alike) = loose_tetrahedron();
     let mut t = Topology::bending(&positions, &triangles, &alike, |_| true).expect("valid mesh");
-    assert_eq!((t.positions.len(), t.edge_counts()), (4, [0, 6, 0]));
-    assert_eq!(t.parts[0].shape, Shape::Bending, "nothing is proved of other poses");
+    assert_eq!((t.positions().len(), t.edge_counts()), (4, [0, 6, 0]));
+    assert_eq!(t.parts()[0].shape, Shape::Bending, "nothing is proved of other poses");
     // Two corners meet: in a rigid mesh they would become one.
     for (p, _) in positions.iter_mut().zip(&alike).filter(|(_, v)| **v == 3) {
         *p = [1.0, 0.0, -0.0];
     }
     assert_eq!(t.move_vertices(&positions), Ok(true));
     assert_eq!(t.move_vertices(&positions), Ok(false), "it is there already");
-    assert_eq!((t.positions.len(), t.edge_counts()), (4, [0, 6, 0]));
+    assert_eq!((t.positions().len(), t.edge_counts()), (4, [0, 6, 0]));
     assert_eq!(t.bounds().max, [1.0, 1.0, 0.0].into());
-    assert_eq!(t.parts[0].bounds.max, t.bounds().max);
+    assert_eq!(t.parts()[0].bounds.max, t.bounds().max);
     let rigid = topology(&(positions, triangles));
-    assert_eq!(rigid.positions.len(), 3);
+    assert_eq!(rigid.positions().len(), 3);
 }
 
 #[test]
@@ -183,7 +183,7 @@ fn vertices_that_only_meet_are_not_welded_in_a_mesh_that_bends() {
     let ((positions, triangles), mut alike) = loose_tetrahedron();
     alike[0] = 9;
     let t = Topology::bending(&positions, &triangles, &alike, |_| true).expect("valid mesh");
-    assert_eq!((t.positions.len(), t.parts[0].shape), (5, Shape::Open));
+    assert_eq!((t.positions().len(), t.parts()[0].shape), (5, Shape::Open));
 }
 
 #[test]

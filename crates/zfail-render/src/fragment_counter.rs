@@ -1,7 +1,7 @@
 //! How many fragments a frame's volumes have, counted in passes of their own: no figure of a device's own is the same
 //! everywhere, and drawing them with another blend state is.
 //!
-//! In: shadows that have prepared a frame. Out: the number of fragments by light.
+//! In: a prepared frame. Out: the number of fragments by light.
 
 use crate::pipeline::cleared;
 use crate::targets::view;
@@ -35,7 +35,7 @@ impl FragmentCounter {
         };
         let target = zfail::Target { colors: &[Some(LAYERS)], depth_stencil: gpu.depth_stencil, samples: 1 };
         Self {
-            pipelines: shadows.fragment_counters(&gpu.device, &target),
+            pipelines: zfail::low_level::fragment_counters(shadows, &target),
             layers: texture(LAYERS, wgpu::TextureUsages::COPY_SRC),
             depth_stencil: view(&texture(gpu.depth_stencil, wgpu::TextureUsages::empty())),
         }
@@ -46,8 +46,8 @@ impl FragmentCounter {
         [self.layers.width(), self.layers.height()] == [width, height]
     }
 
-    /// The fragments of light `light` of the frame that `shadows` has prepared, all volumes together.
-    pub fn count(&self, gpu: &Gpu, shadows: &zfail::Shadows, light: usize) -> Result<u64, RenderError> {
+    /// The fragments of light `light` of a prepared frame, all volumes together.
+    pub fn count(&self, gpu: &Gpu, prepared: &zfail::Prepared<'_>, light: usize) -> Result<u64, RenderError> {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("fragments"),
@@ -59,7 +59,7 @@ impl FragmentCounter {
             }),
             ..Default::default()
         });
-        shadows.draw(&mut pass, &self.pipelines, light);
+        prepared.draw(&mut pass, &self.pipelines, light);
         drop(pass);
         gpu.queue.submit([encoder.finish()]);
         let texels: Vec<u16> = bytemuck::pod_collect_to_vec(&gpu.read_texture(&self.layers)?);

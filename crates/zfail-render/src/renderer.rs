@@ -115,7 +115,7 @@ impl<'g> Renderer<'g> {
     /// # Errors
     /// If it is another scene, or the device runs out of memory.
     pub fn set_casting(&mut self, scene: &Scene) -> Result<(), RenderError> {
-        self.scene.set_casting(self.gpu, scene)
+        self.scene.set_casting(scene)
     }
 
     /// Renders one picture and reads it back.
@@ -180,8 +180,8 @@ impl<'g> Renderer<'g> {
         }
         let Some(counter) = &self.fragments else { return Ok(()) };
         for (l, light) in stats.lights.iter_mut().enumerate() {
-            let shadows = Some(&self.scene.shadows).filter(|_| self.shadowed);
-            light.fragments = Some(shadows.map_or(Ok(0), |shadows| counter.count(self.gpu, shadows, l))?);
+            let prepared = self.scene.shadows.prepared().filter(|_| self.shadowed);
+            light.fragments = Some(prepared.map_or(Ok(0), |prepared| counter.count(self.gpu, &prepared, l))?);
         }
         Ok(())
     }
@@ -222,17 +222,14 @@ impl<'g> Renderer<'g> {
 
         let start = Instant::now();
         self.shadowed = settings.shadows;
+        let readable = self.targets.as_ref().is_some_and(|targets| targets.depth.is_some());
         let figures = if settings.shadows {
             let ground = ground.map(|ground| ground.bounds());
             let lights: Vec<_> = chosen.iter().copied().zip(kinds.iter().copied()).collect();
-            self.scene.plan(gpu, view, &lights, settings, Counting::Verdict, ground)?
+            self.scene.plan(gpu, view, &lights, settings, Counting::Verdict, ground, readable)?
         } else {
             vec![unplanned(view); chosen.len()]
         };
-        let readable = self.targets.as_ref().is_some_and(|targets| targets.depth.is_some());
-        if settings.shadows && readable {
-            self.scene.plan_tiles(gpu, settings)?;
-        }
         let planning_ms = start.elapsed().as_secs_f64() * 1e3;
 
         self.scene.arrange(gpu, view);
@@ -247,7 +244,7 @@ impl<'g> Renderer<'g> {
         // Several steps would write the same queries.
         self.timer.begin(gpu, if divided { 0 } else { spans.count() });
         for (number, part) in parts.iter().enumerate() {
-            self.step(view, &active, &kinds, &figures, &exposed, part, number > 0, finish, spans, settings)?;
+            self.step(view, &active, &kinds, &exposed, part, number > 0, finish, spans, settings)?;
         }
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         if finish == Finish::Darkroom {
@@ -269,7 +266,8 @@ impl<'g> Renderer<'g> {
         let lights = chosen.iter().zip(figures).enumerate().map(|(i, (&l, figures))| {
             let kind = lights::kind_name(&self.scene.lights[l].kind);
             let shadow_ms = spans.light(i).and_then(|span| times.pass_ms(span));
-            let tiled = self.scene.shadows.tile_stats(i).filter(|_| settings.shadows);
+            let prepared = self.scene.shadows.prepared().filter(|_| settings.shadows);
+            let tiled = prepared.and_then(|prepared| zfail::low_level::tile_stats(&prepared, i));
             let light_ms = shading_ms.filter(|_| chosen.len() == 1);
             LightFigures {
                 tiled: tiled.map_or(0, |tiled| tiled.quads as u64),

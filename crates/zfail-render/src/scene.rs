@@ -53,7 +53,7 @@ pub struct SceneOnGpu {
 impl SceneOnGpu {
     pub fn new(gpu: &Gpu, layouts: &Layouts, scene: &Scene) -> Result<Self, RenderError> {
         check::scene(scene)?;
-        let mut shadows = Shadows::new(&gpu.device);
+        let mut shadows = Shadows::new(&gpu.device, &gpu.queue);
         let mut meshes = Vec::with_capacity(scene.meshes.len());
         let mut ids = Vec::with_capacity(scene.meshes.len());
         for (m, mesh) in scene.meshes.iter().enumerate() {
@@ -64,7 +64,7 @@ impl SceneOnGpu {
             }
             meshes.push(Some(MeshBuffers::new(gpu, mesh)?));
             let casting = scene.instances.iter().any(|i| i.mesh == m && i.casts_shadow);
-            ids.push(if casting { register(gpu, &mut shadows, scene, m)? } else { None });
+            ids.push(if casting { register(&mut shadows, scene, m)? } else { None });
         }
         let emission = scene
             .materials
@@ -109,7 +109,7 @@ impl SceneOnGpu {
                 buffers.bend(gpu, bent);
             }
             if let Some(caster) = self.caster_meshes[bent.mesh] {
-                self.shadows.move_vertices(&gpu.queue, caster, &bent.positions)?;
+                self.shadows.move_vertices(caster, &bent.positions)?;
             }
             self.mesh_bounds[bent.mesh] = Bounds::of(bent.positions.iter().map(|p| DVec3::from(p.map(f64::from))));
         }
@@ -150,12 +150,12 @@ impl SceneOnGpu {
     }
 
     /// Takes from `scene` which instances cast shadows.
-    pub fn set_casting(&mut self, gpu: &Gpu, scene: &Scene) -> Result<(), RenderError> {
+    pub fn set_casting(&mut self, scene: &Scene) -> Result<(), RenderError> {
         self.check_instances(scene)?;
         for instance in scene.instances.iter().filter(|instance| instance.casts_shadow) {
             let m = instance.mesh;
             if self.meshes[m].is_some() && self.caster_meshes[m].is_none() {
-                self.caster_meshes[m] = register(gpu, &mut self.shadows, scene, m)?;
+                self.caster_meshes[m] = register(&mut self.shadows, scene, m)?;
             }
         }
         for (instance, from) in self.instances.iter_mut().zip(&scene.instances) {
@@ -183,7 +183,7 @@ impl SceneOnGpu {
         self.caster_of.clear();
         for instance in &self.instances {
             self.caster_of.push(self.caster_meshes[instance.mesh].filter(|_| instance.casts_shadow).map(|mesh| {
-                self.casters.push(Caster { mesh, world_from_object: instance.world_from_object });
+                self.casters.push(Caster::new(mesh, instance.world_from_object));
                 self.casters.len() - 1
             }));
         }
@@ -223,7 +223,9 @@ impl SceneOnGpu {
         }
     }
 
-    /// Plans and uploads the volumes of lights, each taken as a kind, with shadows on `ground` beside those on surfaces.
+    /// Plans and uploads the volumes of lights, each taken as a kind, with shadows on `ground` beside those on surfaces, and
+    /// chooses what of them is counted by tiles if the depth can be read.
+    #[expect(clippy::too_many_arguments, reason = "what a frame's shadows depend on")]
     pub fn plan(
         &mut self,
         gpu: &Gpu,
@@ -232,6 +234,7 @@ impl SceneOnGpu {
         settings: &Settings,
         counting: Counting,
         ground: Option<Bounds>,
+        readable: bool,
     ) -> Result<Vec<LightStats>, RenderError> {
         let excluded: Vec<Vec<usize>> = chosen
             .iter()
@@ -242,31 +245,23 @@ impl SceneOnGpu {
         let steps = settings.steps();
         let boxes = [self.bounds, ground.unwrap_or(Bounds::EMPTY)];
         let receivers = if ground.is_some() { &boxes[..] } else { &boxes[..1] };
-        if self.posed && steps.silhouettes == Silhouettes::WhereCheaper {
+        let silhouettes = self.posed && steps.silhouettes == Silhouettes::WhereCheaper;
+        if silhouettes || readable && steps.tiles == Tiles::WhereCheaper {
             self.shadows.set_cost_model(gpu.costs());
         }
-        let frame = Frame { view, casters: &self.casters, lights: &lights, receivers, steps, counting };
-        self.shadows.prepare(&gpu.device, &gpu.queue, &frame)?;
-        Ok((0..chosen.len()).map(|light| self.shadows.stats(light)).collect())
-    }
-
-    /// Chooses what of the planned frame is counted by tiles.
-    pub fn plan_tiles(&mut self, gpu: &Gpu, settings: &Settings) -> Result<(), RenderError> {
-        if settings.steps().tiles == Tiles::WhereCheaper {
-            self.shadows.set_cost_model(gpu.costs());
-        }
-        self.shadows.prepare_tiles(&gpu.device, &gpu.queue)?;
-        Ok(())
+        let frame = Frame::new(view, &self.casters, &lights).receivers(receivers).steps(steps).counting(counting);
+        let prepared = self.shadows.prepare(&frame.tile_pass(readable))?;
+        Ok((0..chosen.len()).map(|light| prepared.stats(light)).collect())
     }
 }
 
 /// Registers mesh `m` as one that casts; `None` if all its triangles let light through.
-fn register(gpu: &Gpu, shadows: &mut Shadows, scene: &Scene, m: usize) -> Result<Option<MeshId>, RenderError> {
+fn register(shadows: &mut Shadows, scene: &Scene, m: usize) -> Result<Option<MeshId>, RenderError> {
     if !(0..scene.meshes[m].triangles.len()).any(|t| scene.triangle_casts(m, t)) {
         return Ok(None);
     }
     let topology = scene.topology(m).map_err(zfail::Error::from)?;
-    Ok(Some(shadows.add_topology(&gpu.device, &gpu.queue, topology)?))
+    Ok(Some(shadows.add_topology(topology)?))
 }
 
 fn index_buffer(gpu: &Gpu, size: u64) -> wgpu::Buffer {

@@ -61,7 +61,6 @@ pub const CUTOUT: Program = program!("cutout", "frame", "vertex_textured", "mate
 pub const OPEN_SKY: Program =
     program!("open sky", "limits", "frame", "screen", "sky", "tone_map", "backdrop", "open_sky");
 const GROUND: [Program; 2] = [ground!("ground_single"), ground!("ground_multi")];
-pub const VERDICT: Program = program!("verdict", "screen", "verdict");
 pub const DESCRIBE: Program =
     program!("describe", "limits", "frame", "octahedral", "vertex_mapped", "material", "describe");
 pub const OWN_SHADOW: Program = program!("own shadow", "frame", "vertex_plain", "own_shadow");
@@ -125,7 +124,7 @@ mod tests {
 
     fn programs() -> Vec<Program> {
         [
-            &[DEPTH, CUTOUT, OPEN_SKY, VERDICT, DESCRIBE, MASK, OWN_SHADOW][..],
+            &[DEPTH, CUTOUT, OPEN_SKY, DESCRIBE, MASK, OWN_SHADOW][..],
             FORWARD.as_flattened(),
             &GROUND,
             &METER,

@@ -12,22 +12,17 @@ pub struct ShadowPass {
 impl ShadowPass {
     pub fn new(gpu: &Gpu, shadows: &zfail::Shadows) -> Self {
         let target = zfail::Target { colors: &[], depth_stencil: gpu.depth_stencil, samples: 1 };
-        Self { pipelines: shadows.pipelines(&gpu.device, &target) }
+        Self { pipelines: shadows.pipelines(&target) }
     }
 
-    /// Clears the stencil and counts the volumes of light `light` of the frame that `shadows` has prepared; with the first
-    /// one, all that are counted by tiles.
+    /// Clears the stencil and counts the volumes of light `light` of a prepared frame.
     pub fn encode(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         targets: &Attributes,
-        shadows: &zfail::Shadows,
+        prepared: &zfail::Prepared<'_>,
         light: usize,
-        device: &wgpu::Device,
     ) {
-        if let Some(depth) = targets.stored_depth.as_ref().filter(|_| light == 0) {
-            shadows.count_tiles(device, encoder, depth);
-        }
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadow"),
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
@@ -37,6 +32,6 @@ impl ShadowPass {
             }),
             ..Default::default()
         });
-        shadows.draw(&mut pass, &self.pipelines, light);
+        prepared.draw(&mut pass, &self.pipelines, light);
     }
 }

@@ -4,7 +4,7 @@ use crate::layouts::{Layouts, bind};
 use crate::{Gpu, RenderError};
 
 /// The light verdicts: a bit per light, set where it is blocked.
-pub const VERDICTS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+pub const VERDICTS: wgpu::TextureFormat = zfail::VerdictBits::FORMAT;
 /// Sum of what the lights send to the eye.
 pub const RADIANCE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Exposed radiance.

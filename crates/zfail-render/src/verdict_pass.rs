@@ -5,19 +5,16 @@ use crate::draw_list::{Alpha, Draw, Look};
 use crate::frame::FrameData;
 use crate::geometry::Vertices;
 use crate::layouts::Layouts;
-use crate::pipeline::{ADD, Recipe, cleared, cleared_depth, continued, continued_depth, depth_test};
+use crate::pipeline::{Recipe, cleared, cleared_depth, continued, continued_depth, depth_test};
 use crate::scene::SceneOnGpu;
 use crate::surroundings::VisibleGround;
 use crate::targets::VERDICTS;
 use crate::timing::Timer;
 use crate::{Gpu, shader};
 use std::collections::HashMap;
-use std::ops::Range;
 
 /// Lights whose verdicts fit a texel.
-pub const LIGHTS: usize = 32;
-/// Of these, those that share a channel.
-const PER_CHANNEL: usize = 8;
+pub const LIGHTS: usize = zfail::VerdictBits::LIGHTS;
 
 /// What a depth pipeline depends on: winding, two sides, and for surfaces with alpha whether they have a texture.
 type Key = (bool, bool, Option<bool>);
@@ -29,12 +26,17 @@ const GROUND: Key = (false, false, None);
 #[derive(Debug)]
 pub struct VerdictPass {
     samples: u32,
-    /// Whether verdicts become bits; otherwise that of the one light stays in the stencil.
-    bits: bool,
     depth: HashMap<Key, wgpu::RenderPipeline>,
-    volumes: zfail::Pipelines,
-    /// One per channel.
-    keep: [wgpu::RenderPipeline; 4],
+    volumes: Volumes,
+}
+
+/// Where verdicts are kept.
+#[derive(Debug)]
+enum Volumes {
+    /// As bits of a colour target.
+    Bits(zfail::VerdictBits),
+    /// That of the one light stays in the stencil.
+    Stencil(zfail::Pipelines),
 }
 
 /// What the pass draws to.
@@ -42,8 +44,8 @@ pub struct VerdictTargets<'a> {
     /// For bits.
     pub verdicts: Option<&'a wgpu::TextureView>,
     pub depth_stencil: &'a wgpu::TextureView,
-    /// The device and the depth for reading, if lights are counted by tiles.
-    pub tiles: Option<(&'a wgpu::Device, &'a wgpu::TextureView)>,
+    /// The depth for reading, if lights are counted by tiles.
+    pub depth: Option<&'a wgpu::TextureView>,
     /// Verdicts are on what is nearest, blended surfaces included; otherwise on what is behind them, and on the ground.
     pub layered: bool,
     pub ground: Option<VisibleGround<'a>>,
@@ -54,47 +56,25 @@ pub struct VerdictTargets<'a> {
 pub struct Verdict {
     /// Its number in the frame that the shadows were prepared for.
     pub light: usize,
-    /// Pixels that it may reach: x, y, width, height; `None` where nothing can be in its shadow.
-    pub scissor: Option<[u32; 4]>,
     /// Where its time goes.
     pub span: Option<usize>,
 }
 
 impl VerdictPass {
     pub fn new(gpu: &Gpu, shadows: &zfail::Shadows, samples: u32, bits: bool) -> Self {
-        let colors: &[_] = if bits { &[Some(VERDICTS)] } else { &[] };
-        let target = zfail::Target { colors, depth_stencil: gpu.depth_stencil, samples };
-        // Nothing to do where the count is 0. Elsewhere the count is reset for the next light.
-        let face = wgpu::StencilFaceState {
-            compare: wgpu::CompareFunction::NotEqual,
-            fail_op: wgpu::StencilOperation::Keep,
-            depth_fail_op: wgpu::StencilOperation::Zero,
-            pass_op: wgpu::StencilOperation::Zero,
+        let volumes = match bits {
+            true => Volumes::Bits(zfail::VerdictBits::new(shadows, gpu.depth_stencil, samples)),
+            false => {
+                let target = zfail::Target { colors: &[], depth_stencil: gpu.depth_stencil, samples };
+                Volumes::Stencil(shadows.pipelines(&target))
+            }
         };
-        let keep =
-            [wgpu::ColorWrites::RED, wgpu::ColorWrites::GREEN, wgpu::ColorWrites::BLUE, wgpu::ColorWrites::ALPHA].map(
-                |write_mask| {
-                    Recipe {
-                        program: shader::VERDICT,
-                        entry: "verdict",
-                        constants: &[],
-                        groups: &[],
-                        targets: &[Some(wgpu::ColorTargetState { format: VERDICTS, blend: Some(ADD), write_mask })],
-                        depth_stencil: Some(wgpu::DepthStencilState {
-                            stencil: wgpu::StencilState { front: face, back: face, read_mask: 0xff, write_mask: 0xff },
-                            ..depth_test(gpu.depth_stencil, wgpu::CompareFunction::Always, false)
-                        }),
-                        samples,
-                    }
-                    .screen(&gpu.device)
-                },
-            );
-        Self { samples, bits, depth: HashMap::new(), volumes: shadows.pipelines(&gpu.device, &target), keep }
+        Self { samples, depth: HashMap::new(), volumes }
     }
 
     /// Makes the pipelines that the scene's draws and its ground lack, those of blended surfaces if `layered`.
     pub fn prepare(&mut self, gpu: &Gpu, layouts: &Layouts, scene: &SceneOnGpu, layered: bool) {
-        let (samples, bits) = (self.samples, self.bits);
+        let (samples, bits) = (self.samples, matches!(self.volumes, Volumes::Bits(_)));
         for draw in draws(scene, layered) {
             let key = key(scene.draws.parts[draw.part].look, draw);
             self.depth.entry(key).or_insert_with(|| create(gpu, layouts, samples, bits, key));
@@ -104,23 +84,25 @@ impl VerdictPass {
 
     /// Fills depth and verdicts, the first light's in the lowest bit of red, or the only one's in the stencil; `timer` comes
     /// with the span of the pass.
+    #[expect(clippy::too_many_arguments, reason = "the state of a pass")]
     pub fn encode(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         targets: &VerdictTargets<'_>,
         frame: &FrameData,
         scene: &SceneOnGpu,
+        mut prepared: zfail::Prepared<'_>,
         lights: impl Iterator<Item = Verdict>,
         timer: (&Timer, Option<usize>),
     ) {
-        let &VerdictTargets { verdicts, depth_stencil, tiles, layered, ground } = targets;
+        let &VerdictTargets { verdicts, depth_stencil, depth, layered, ground } = targets;
         let timestamps = timer.1.and_then(|span| timer.0.pass(span));
         let (begin, end) = (timestamps.clone(), timestamps.clone());
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("verdicts"),
             color_attachments: verdicts.map(|view| cleared(view, [0.0; 4])).as_slice(),
             depth_stencil_attachment: Some(cleared_depth(depth_stencil)),
-            timestamp_writes: match tiles {
+            timestamp_writes: match depth {
                 None => timestamps,
                 Some(_) => begin.map(|t| wgpu::RenderPassTimestampWrites { end_of_pass_write_index: None, ..t }),
             },
@@ -143,10 +125,10 @@ impl VerdictPass {
             pass.set_pipeline(pipeline);
             ground.draw(&mut pass, Vertices::Depth, &frame.instances, scene.draws.order.len() as u32);
         }
-        if let Some((device, depth)) = tiles {
+        if let Some(depth) = depth {
             // The tile pass reads depth, so the render pass is interrupted for it.
             drop(pass);
-            scene.shadows.count_tiles(device, encoder, depth);
+            prepared = prepared.count_tiles(encoder, depth);
             pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("verdicts"),
                 color_attachments: verdicts.map(continued).as_slice(),
@@ -161,15 +143,9 @@ impl VerdictPass {
             if let Some(span) = light.span {
                 timer.0.stamp(&mut pass, span, false);
             }
-            if light.scissor.is_some() {
-                scene.shadows.draw(&mut pass, &self.volumes, light.light);
-            }
-            if let Some([x, y, width, height]) = light.scissor.filter(|_| self.bits) {
-                let within: Range<u32> = (bit % PER_CHANNEL) as u32..(bit % PER_CHANNEL) as u32 + 1;
-                pass.set_scissor_rect(x, y, width, height);
-                pass.set_stencil_reference(0);
-                pass.set_pipeline(&self.keep[bit / PER_CHANNEL]);
-                pass.draw(0..3, within);
+            match &self.volumes {
+                Volumes::Bits(bits) => bits.draw(&mut pass, &prepared, light.light, bit),
+                Volumes::Stencil(pipelines) => prepared.draw(&mut pass, pipelines, light.light),
             }
             if let Some(span) = light.span {
                 timer.0.stamp(&mut pass, span, true);

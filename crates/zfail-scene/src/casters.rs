@@ -52,7 +52,7 @@ impl Scene {
             };
             casting::castings(topology, light, &mut of_parts);
             let of_part = |&part: &u32| if part == NONE { None } else { of_parts.get(part as usize).copied() };
-            topology.part_of.iter().map(of_part).collect()
+            topology.part_of().iter().map(of_part).collect()
         };
         self.instances.iter().map(&mut of_instance).collect()
     }

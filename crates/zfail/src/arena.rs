@@ -43,11 +43,11 @@ impl Arena {
 
     /// Stores a mesh; returns its slot, its serial number and whether the buffer is a new one.
     pub fn add(&mut self, device: &Device, queue: &Queue, topology: Topology) -> Result<(usize, u64, bool), Error> {
-        let count = topology.positions.len() as u64;
+        let count = topology.positions().len() as u64;
         let capacity = self.buffer.size() / POSITION;
         let grow = self.used + count > capacity;
         if grow {
-            let live: u64 = self.slots.iter().flatten().map(|m| m.topology.positions.len() as u64).sum();
+            let live: u64 = self.slots.iter().flatten().map(|m| m.topology.positions().len() as u64).sum();
             self.regrow(device, queue, live + count)?;
         }
         let serial = self.next_serial;
@@ -93,14 +93,14 @@ impl Arena {
         for mesh in self.slots.iter_mut().flatten() {
             mesh.first = self.used as u32;
             upload(queue, &self.buffer, mesh);
-            self.used += mesh.topology.positions.len() as u64;
+            self.used += mesh.topology.positions().len() as u64;
         }
         Ok(())
     }
 }
 
 fn upload(queue: &Queue, buffer: &Buffer, mesh: &Mesh) {
-    queue.write_buffer(buffer, u64::from(mesh.first) * POSITION, bytemuck::cast_slice(&mesh.topology.positions));
+    queue.write_buffer(buffer, u64::from(mesh.first) * POSITION, bytemuck::cast_slice(mesh.topology.positions()));
 }
 
 fn buffer(device: &Device, positions: u64) -> Buffer {

@@ -7,7 +7,9 @@
 
 mod silhouettes;
 
-use crate::{Caster, Counting, Frame, LightKind, ShadowLight, Shadows, Steps, Target};
+use crate::{
+    Blocking, Caster, Frame, LightKind, MeshBlocking, MeshDescriptor, ShadowLight, Shadows, Steps, Target, low_level,
+};
 use glam::{DAffine3, DVec3};
 use std::time::Instant;
 use wgpu::{
@@ -58,7 +60,7 @@ impl CostModel {
         pairs * (self.raster_pair_ns - self.tile_pair_ns) > f64::from(pixels) * self.tile_pixel_ns
     }
 
-    /// Steps `device`: a few frames of 512x512 pixels and a few silhouettes, a tenth of a second or two on a software
+    /// Measures `device`: a few frames of 512x512 pixels and a few silhouettes, a tenth of a second or two on a software
     /// device. Keep the result as long as the device.
     #[must_use]
     pub fn calibrate(device: &Device, queue: &Queue) -> Self {
@@ -86,7 +88,7 @@ fn measure(device: &Device, queue: &Queue) -> Option<CostModel> {
 
 /// Nanoseconds of a frame whose one volume has so many sides, rasterised and by tiles, and the pairs in the latter case.
 fn measure_disc(device: &Device, queue: &Queue, spokes: u32) -> Option<(f64, f64, usize)> {
-    let mut shadows = Shadows::new(device);
+    let mut shadows = Shadows::new(device, queue);
     // A jagged disc before a light behind it: its sides fan out over the whole image, which shows nothing but them.
     let rim = |i: u32| {
         let turn = std::f64::consts::TAU * f64::from(i) / f64::from(spokes);
@@ -95,11 +97,11 @@ fn measure_disc(device: &Device, queue: &Queue, spokes: u32) -> Option<(f64, f64
     };
     let positions: Vec<[f32; 3]> = (0..spokes).map(rim).chain([[0.0; 3]]).collect();
     let triangles: Vec<[u32; 3]> = (0..spokes).map(|i| [spokes, i, (i + 1) % spokes]).collect();
-    let both = |_| zfail_plan::topology::Blocking::BothSides;
-    let mesh = shadows.add_mesh(device, queue, &positions, &triangles, both).ok()?;
-    let casters = [Caster { mesh, world_from_object: DAffine3::from_translation(DVec3::NEG_Z) }];
+    let blocking = MeshBlocking::Uniform(Blocking::BothSides);
+    let disc = MeshDescriptor { positions: &positions, triangles: &triangles, blocking, alike: None };
+    let casters = [Caster::new(shadows.add_mesh(&disc).ok()?, DAffine3::from_translation(DVec3::NEG_Z))];
     let position = DVec3::new(0.0, 0.0, -1.05);
-    let lights = [ShadowLight { kind: LightKind::Point { position, range: f64::INFINITY }, excluded: &[] }];
+    let lights = [ShadowLight::new(LightKind::Point { position, range: f64::INFINITY })];
     let projection = Projection::Perspective { yfov: 1.2, near: 0.01, far: None };
     let view = View::new(DAffine3::from_translation(DVec3::Y * 0.2), projection, [SIZE; 2]);
     let receivers = [Bounds { min: DVec3::splat(-9.0), max: DVec3::splat(9.0) }];
@@ -118,27 +120,25 @@ fn measure_disc(device: &Device, queue: &Queue, spokes: u32) -> Option<(f64, f64
     let aspect = TextureAspect::DepthOnly;
     let depth = texture.create_view(&TextureViewDescriptor { aspect, ..TextureViewDescriptor::default() });
     let target = Target { colors: &[], depth_stencil: texture.format(), samples: 1 };
-    let pipelines = shadows.pipelines(device, &target);
+    let pipelines = shadows.pipelines(&target);
 
     let mut frame = |tiles: Tiles| -> Option<(f64, usize)> {
         let steps = Steps { tiles, ..Technique::Auto.steps() };
-        let counting = Counting::Verdict;
-        let frame = Frame { view: &view, casters: &casters, lights: &lights, receivers: &receivers, steps, counting };
+        let frame = Frame::new(&view, &casters, &lights).receivers(&receivers).steps(steps).tile_pass(true);
         let mut least = f64::INFINITY;
         let mut pairs = 0;
         // The first time, pipelines are compiled. The least of several is what the device needs when nobody disturbs it.
         for _ in 0..10 {
             let start = Instant::now();
-            shadows.prepare(device, queue, &frame).ok()?;
+            let prepared = shadows.prepare(&frame).ok()?;
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             clear(&mut encoder, &attachment, |_| {});
-            shadows.prepare_tiles(device, queue).ok()?;
-            shadows.count_tiles(device, &mut encoder, &depth);
-            clear(&mut encoder, &attachment, |pass| shadows.draw(pass, &pipelines, 0));
+            let prepared = prepared.count_tiles(&mut encoder, &depth);
+            clear(&mut encoder, &attachment, |pass| prepared.draw(pass, &pipelines, 0));
             queue.submit([encoder.finish()]);
             device.poll(PollType::wait_indefinitely()).ok()?;
             least = least.min(start.elapsed().as_secs_f64() * 1e9);
-            pairs = shadows.tile_stats(0).map_or(0, |stats| stats.pairs);
+            pairs = low_level::tile_stats(&prepared, 0).map_or(0, |stats| stats.pairs);
         }
         Some((least, pairs))
     };

@@ -34,4 +34,22 @@ pub enum Error {
         /// The device's limit.
         limit: u64,
     },
+    /// A matrix of the host's own shows something else than the view does.
+    #[error(
+        "the matrix of caster {caster} does not show what the frame's view shows: make both from one camera, and without \
+         jitter on only one of them (`View::from_matrices`, `View::jittered`)"
+    )]
+    ClipMatrix {
+        /// Index of the caster in the frame.
+        caster: usize,
+    },
+    /// A matrix of the host's own gives depth to what is infinitely far.
+    #[error(
+        "the matrix of caster {caster} gives depth to directions, which have none in a view without a far plane: its third row \
+         has to be 0, 0, 0 and the near plane's distance, so multiply the projection last and in f64, or put those zeros in"
+    )]
+    ClipDepth {
+        /// Index of the caster in the frame.
+        caster: usize,
+    },
 }

@@ -2,10 +2,9 @@
 
 use crate::error::Error;
 use bytemuck::{Pod, Zeroable};
-use glam::DAffine3;
+use glam::Mat4;
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, Device, Queue};
 use zfail_plan::plan::{Draw, FramePlan};
-use zfail_plan::view::View;
 
 /// `Draw` of `volume.wgsl`.
 #[repr(C)]
@@ -18,10 +17,10 @@ pub(crate) struct DrawRecord {
 }
 
 impl DrawRecord {
-    /// Of a draw whose caster is placed in `view`.
-    pub fn new(draw: &Draw, view: &View, world_from_object: &DAffine3) -> Self {
+    /// Of a draw whose caster is drawn with a matrix.
+    pub fn new(draw: &Draw, clip_from_object: Mat4) -> Self {
         Self {
-            clip_from_object: view.clip_from_object(world_from_object).to_cols_array_2d(),
+            clip_from_object: clip_from_object.to_cols_array_2d(),
             light: draw.light.to_array(),
             reach: draw.reach,
             _pad: [0.0; 3],
@@ -52,10 +51,9 @@ impl FrameBuffers {
         device: &Device,
         queue: &Queue,
         plan: &FramePlan,
-        view: &View,
-        world_from_object: impl Fn(u32) -> DAffine3,
+        clip_from_object: impl Fn(u32) -> Mat4,
     ) -> Result<bool, Error> {
-        let record = |draw: &Draw| DrawRecord::new(draw, view, &world_from_object(draw.caster));
+        let record = |draw: &Draw| DrawRecord::new(draw, clip_from_object(draw.caster));
         self.records.clear();
         self.records.extend(plan.draws.iter().map(record));
 

@@ -65,8 +65,8 @@ type Set = [[RenderPipeline; 2]; 2];
 pub(crate) struct Variant {
     /// Counts fragments in front of the visible surface.
     pub z_pass: bool,
-    /// The view's far plane is not at infinity.
-    pub finite: bool,
+    /// The view has a far plane, before infinity.
+    pub far_plane: bool,
     /// Counts go to seven bits only.
     pub batched: bool,
     /// The outside of the geometry is wound clockwise.
@@ -102,7 +102,7 @@ impl Pipelines {
 
     /// The pipeline for sides and dark caps.
     pub(crate) fn extruded(&self, v: Variant) -> &RenderPipeline {
-        let set = match (v.z_pass, v.finite) {
+        let set = match (v.z_pass, v.far_plane) {
             // Clamped, volumes in front of the near plane would count; clipped at the far plane, nothing is missed.
             (true, _) => &self.z_pass,
             (false, true) => &self.clamped,

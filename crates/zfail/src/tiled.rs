@@ -8,7 +8,7 @@
 use crate::arena::Arena;
 use crate::cost::CostModel;
 use crate::error::Error;
-use crate::shadows::Caster;
+use crate::frame::{Caster, Frame};
 use crate::tiles::{Sides, TilePass, TileStats};
 use wgpu::{Device, Queue};
 use zfail_plan::bounds::Bounds;
@@ -17,13 +17,25 @@ use zfail_plan::view::{Projection, View};
 
 /// What the draws of a frame refer to.
 #[derive(Clone, Debug)]
-pub(crate) struct Prepared {
+pub(crate) struct Staged {
     pub view: View,
     pub casters: Vec<Caster>,
     pub steps: Steps,
     pub counting: Counting,
     /// Bounds of all visible surfaces; empty if they are not known.
     pub visible: Bounds,
+}
+
+impl Staged {
+    /// `frame`, its casters in memory that is kept.
+    pub fn new(frame: &Frame<'_>, casters: Vec<Caster>) -> Self {
+        let mut visible = Bounds::EMPTY;
+        for receivers in frame.receivers.iter().filter(|bounds| !bounds.is_empty()) {
+            visible.add(receivers.min);
+            visible.add(receivers.max);
+        }
+        Self { view: *frame.view, casters, steps: frame.steps, counting: frame.counting, visible }
+    }
 }
 
 /// The tile pass and who takes part in it.
@@ -62,22 +74,22 @@ impl Tiled {
         &mut self,
         device: &Device,
         queue: &Queue,
-        prepared: &Prepared,
+        staged: &Staged,
         plan: &FramePlan,
         arena: &Arena,
         costs: CostModel,
     ) -> Result<bool, Error> {
         self.lights.clear();
         self.lights.resize(plan.lights.len(), None);
-        let steps = prepared.steps;
+        let steps = staged.steps;
         if steps.tiles == Tiles::Never
-            || prepared.counting == Counting::Raw
-            || prepared.visible.is_empty()
-            || !matches!(prepared.view.projection, Projection::Perspective { .. })
+            || staged.counting == Counting::Raw
+            || staged.visible.is_empty()
+            || !matches!(staged.view.projection, Projection::Perspective { .. })
         {
             return Ok(false);
         }
-        self.pass.begin(&prepared.view, &prepared.visible);
+        self.pass.begin(&staged.view, &staged.visible);
         let mut next = 0;
         for (slot, light) in self.lights.iter_mut().zip(&plan.lights) {
             let draws = || {
@@ -100,7 +112,7 @@ impl Tiled {
                 .map(|draw| draw.near_layers)
                 .sum();
             let base = light.stats.near_count - rasterised;
-            let sides = draws().filter_map(|draw| sides(draw, prepared, plan, arena));
+            let sides = draws().filter_map(|draw| sides(draw, staged, plan, arena));
             let worth = |pairs: usize| always || costs.may_tile(pairs as f64, pixels);
             if let Some(stats) = self.pass.add(device, base.cast_signed(), sides, worth) {
                 *slot = Some(TiledLight { index: next, stats });
@@ -120,12 +132,12 @@ fn most_pairs(draw: &Draw) -> f64 {
     f64::from(draw.volume.triangles()[0]) * (width + height) / 8.0
 }
 
-fn sides<'a>(draw: &Draw, prepared: &Prepared, plan: &'a FramePlan, arena: &'a Arena) -> Option<Sides<'a>> {
-    let caster = prepared.casters.get(draw.caster as usize)?;
+fn sides<'a>(draw: &Draw, staged: &Staged, plan: &'a FramePlan, arena: &'a Arena) -> Option<Sides<'a>> {
+    let caster = staged.casters.get(draw.caster as usize)?;
     let mesh = arena.get(caster.mesh.slot, caster.mesh.serial)?;
     Some(Sides {
-        positions: &mesh.topology.positions,
-        clip_from_object: prepared.view.clip_from_object(&caster.world_from_object),
+        positions: mesh.topology.positions(),
+        clip_from_object: caster.clip_from_object(&staged.view),
         world_from_object: caster.world_from_object,
         light: draw.light,
         indices: &plan.indices[draw.volume.sides.start as usize..draw.volume.sides.end as usize],

@@ -10,9 +10,9 @@ use serde::Serialize;
 use std::time::{Duration, Instant};
 use zfail_plan::glam::{DAffine3, DVec3};
 use zfail_plan::light::LightKind;
-use zfail_plan::plan::{Counting, ShadowLight, Silhouettes, Steps, Technique};
+use zfail_plan::plan::{ShadowLight, Silhouettes, Steps, Technique};
 use zfail_plan::view::View;
-use zfail_render::zfail::{Caster, Frame, MeshId, Shadows};
+use zfail_render::zfail::{Caster, Frame, MeshDescriptor, MeshId, Shadows};
 use zfail_render::{Gpu, wgpu};
 use zfail_scene::Mesh;
 
@@ -45,7 +45,7 @@ pub fn measure(gpu: &Gpu, mesh: &Mesh, view: &View, light: DVec3) -> Result<Extr
             let spent = player.play(gpu, view, light * (1.0 + 1e-3 * frame as f64)).map_err(Error::failed)?;
             if frame >= WARM_UP {
                 *sum += spent;
-                extracted += player.shadows.stats(0).extracted;
+                extracted += player.shadows.prepared().map_or(0, |prepared| prepared.stats(0).extracted);
             }
         }
     }
@@ -61,20 +61,20 @@ struct Player {
 
 impl Player {
     fn new(gpu: &Gpu, mesh: &Mesh, silhouettes: Silhouettes) -> Result<Self, String> {
-        let mut shadows = Shadows::new(&gpu.device);
-        let mesh = shadows.add_mesh(&gpu.device, &gpu.queue, &mesh.positions, &mesh.triangles, |_| true);
+        let mut shadows = Shadows::new(&gpu.device, &gpu.queue);
+        let Mesh { positions, triangles, .. } = mesh;
+        let mesh = shadows.add_mesh(&MeshDescriptor { positions, triangles, ..MeshDescriptor::default() });
         // As in the lines beside: no near count.
         let steps = Steps { silhouettes, near_count: false, ..Technique::default().steps() };
         Ok(Self { mesh: mesh.map_err(|e| chain(&e))?, shadows, steps })
     }
 
     fn play(&mut self, gpu: &Gpu, view: &View, light: DVec3) -> Result<Duration, String> {
-        let casters = [Caster { mesh: self.mesh, world_from_object: DAffine3::IDENTITY }];
-        let lights = [ShadowLight { kind: LightKind::Point { position: light, range: f64::INFINITY }, excluded: &[] }];
-        let (steps, counting) = (self.steps, Counting::Verdict);
-        let frame = Frame { view, casters: &casters, lights: &lights, receivers: &[], steps, counting };
+        let casters = [Caster::new(self.mesh, DAffine3::IDENTITY)];
+        let lights = [ShadowLight::new(LightKind::Point { position: light, range: f64::INFINITY })];
+        let frame = Frame::new(view, &casters, &lights).steps(self.steps);
         let (wall, cpu) = (Instant::now(), ProcessTime::now());
-        self.shadows.prepare(&gpu.device, &gpu.queue, &frame).map_err(|e| chain(&e))?;
+        self.shadows.prepare(&frame).map_err(|e| chain(&e))?;
         // What is only written goes to the device with the next submission.
         gpu.queue.submit([]);
         gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| chain(&e))?;

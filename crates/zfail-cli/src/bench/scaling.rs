@@ -16,7 +16,7 @@ use std::time::Instant;
 use zfail_builtin::shapes;
 use zfail_plan::glam::{DAffine3, DMat3, DVec3};
 use zfail_plan::light::LightKind;
-use zfail_plan::plan::{Caster, Counting, Frame, LightStats, Planner, ShadowLight, Steps, Technique};
+use zfail_plan::plan::{Caster, Counting, Input, LightStats, Planner, ShadowLight, Steps, Technique};
 use zfail_plan::topology::Topology;
 use zfail_plan::view::{Projection, View};
 use zfail_render::Gpu;
@@ -145,7 +145,7 @@ fn plan(
     let mut time = |light: DVec3| {
         let kind = LightKind::Point { position: light, range: f64::INFINITY };
         let lights = [ShadowLight { kind, excluded: &[] }];
-        let frame = Frame {
+        let frame = Input {
             view: &view,
             casters: &casters,
             lights: &lights,
@@ -164,7 +164,7 @@ fn plan(
         (1..=MOVING_FRAMES).rev().map(|k| time(LIGHT * (1.0 + 1e-3 * k as f64))).collect::<Result<_, _>>()?;
     time(LIGHT)?;
     let still: Vec<f64> = (0..STATIC_FRAMES).map(|_| time(LIGHT)).collect::<Result<_, _>>()?;
-    let triangles = topology.triangles.len();
+    let triangles = topology.triangles().len();
     Ok(Line {
         body,
         eye: name,

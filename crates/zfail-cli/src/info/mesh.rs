@@ -64,22 +64,23 @@ impl MeshReport {
             count == 2 && sum != 0
         });
         let share = |of: fn(&Part) -> bool| {
-            let triangles: usize = topology.parts.iter().filter(|part| of(part)).map(|part| part.triangles.len()).sum();
+            let triangles: usize =
+                topology.parts().iter().filter(|part| of(part)).map(|part| part.triangles.len()).sum();
             triangles as f64 / mesh.triangles.len().max(1) as f64
         };
         Ok(Self {
             name: mesh.name.clone(),
             vertices: mesh.positions.len(),
-            points: topology.positions.len(),
+            points: topology.positions().len(),
             triangles: mesh.triangles.len(),
             closed_share: share(|part| part.shape != Shape::Open),
             single_share: share(|part| matches!(part.shape, Shape::Solid { .. })),
             boundary_edges,
             non_manifold_edges,
             inconsistent_edges: inconsistent.count(),
-            not_casting: topology.part_of.iter().filter(|part| **part == NONE).count(),
+            not_casting: topology.part_of().iter().filter(|part| **part == NONE).count(),
             surfaces: surfaces(scene, index),
-            parts: topology.parts.iter().map(PartReport::new).collect(),
+            parts: topology.parts().iter().map(PartReport::new).collect(),
         })
     }
 }

@@ -77,7 +77,7 @@ impl RayTracer {
             };
             let size = BlasTriangleGeometrySizeDescriptor {
                 vertex_format: VertexFormat::Float32x3,
-                vertex_count: mesh.topology.positions.len() as u32,
+                vertex_count: mesh.topology.positions().len() as u32,
                 index_format: Some(IndexFormat::Uint32),
                 index_count: Some(mesh.casting_len),
                 flags: AccelerationStructureGeometryFlags::OPAQUE,

@@ -6,7 +6,7 @@ use super::meridians::{self, Crossings, Lines};
 use super::pair::{Pair, Role};
 use super::placed::Placed;
 use super::spread::spread;
-use super::{Counting, Frame};
+use super::{Counting, Input};
 use crate::bounds::Bounds;
 use crate::light::LightKind;
 use crate::stack::{self, Outline, Work};
@@ -36,7 +36,7 @@ impl Batching {
     pub fn has_room_for(
         &mut self,
         layers: usize,
-        frame: &Frame<'_>,
+        frame: &Input<'_>,
         l: usize,
         pairs: &mut [Pair],
         placed: &[Placed],
@@ -51,7 +51,7 @@ impl Batching {
     }
 
     /// Sets the batches of `pairs`, all of light `l`, one per caster. Builds their sides. Returns what it looked at.
-    pub fn divide(&mut self, frame: &Frame<'_>, l: usize, pairs: &mut [Pair], placed: &[Placed]) -> u64 {
+    pub fn divide(&mut self, frame: &Input<'_>, l: usize, pairs: &mut [Pair], placed: &[Placed]) -> u64 {
         let active = |pair: &Pair| pair.role != Role::Idle;
         let casting: usize = pairs.iter().filter(|p| active(p)).map(|p| p.casting).sum();
         if frame.counting == Counting::Raw || casting <= SINGLE {
@@ -103,7 +103,7 @@ impl Batching {
 
 /// Whether silhouettes alone prove that no ray crosses more than `most` layers.
 fn quickly_within(
-    frame: &Frame<'_>,
+    frame: &Input<'_>,
     kind: &LightKind,
     pairs: &mut [Pair],
     placed: &[Placed],
@@ -138,7 +138,7 @@ fn quickly_within(
 /// Whether the layers of every caster by itself, and where casters hide one another from the light, prove it: for many
 /// casters that are small as the light sees them, of which lines right across the scene meet too many.
 fn bodies_within(
-    frame: &Frame<'_>,
+    frame: &Input<'_>,
     kind: &LightKind,
     pairs: &[Pair],
     placed: &[Placed],
@@ -163,7 +163,7 @@ fn bodies_within(
 }
 
 /// How directions from a light to the casters that draw anything are told apart.
-fn directions(light: DVec4, pairs: &[Pair], placed: &[Placed]) -> stack::Frame {
+fn directions(light: DVec4, pairs: &[Pair], placed: &[Placed]) -> stack::Chart {
     let mut bounds = Bounds::EMPTY;
     let active = pairs.iter().zip(placed).filter(|(pair, caster)| pair.role != Role::Idle && !caster.bounds.is_empty());
     for (_, caster) in active {
@@ -171,5 +171,5 @@ fn directions(light: DVec4, pairs: &[Pair], placed: &[Placed]) -> stack::Frame {
         bounds.add(world.min);
         bounds.add(world.max);
     }
-    stack::Frame::new(light, &bounds)
+    stack::Chart::new(light, &bounds)
 }

@@ -9,7 +9,7 @@ use super::batches::SINGLE;
 use super::off_screen::Parts;
 use super::pair::{Pair, Role};
 use super::placed::Placed;
-use super::{Counting, Frame, Silhouettes, Steps};
+use super::{Counting, Input, Silhouettes, Steps};
 use crate::casting::{self, Casting, ObjectLight};
 use crate::topology::Topology;
 use crate::view::Projection;
@@ -173,7 +173,7 @@ impl Pair {
 }
 
 /// Chooses which pairs of a light go to the device. Returns how many layers they have at most, if there are any.
-pub(super) fn choose(frame: &Frame<'_>, steps: Steps, extractable: &[bool], pairs: &mut [Pair]) -> Option<usize> {
+pub(super) fn choose(frame: &Input<'_>, steps: Steps, extractable: &[bool], pairs: &mut [Pair]) -> Option<usize> {
     let perspective = matches!(frame.view.projection, Projection::Perspective { .. });
     let mut candidates = 0;
     for (c, pair) in pairs.iter_mut().enumerate() {

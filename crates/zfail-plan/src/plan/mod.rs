@@ -63,9 +63,17 @@ pub struct ShadowLight<'a> {
     pub excluded: &'a [usize],
 }
 
+impl ShadowLight<'_> {
+    /// A light that all casters block.
+    #[must_use]
+    pub const fn new(kind: LightKind) -> Self {
+        Self { kind, excluded: &[] }
+    }
+}
+
 /// Everything that a frame's shadows depend on.
 #[derive(Clone, Copy, Debug)]
-pub struct Frame<'a> {
+pub struct Input<'a> {
     /// The camera.
     pub view: &'a View,
     /// What may block light.

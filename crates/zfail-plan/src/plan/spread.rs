@@ -3,7 +3,7 @@
 //! In: weights of every pair of one light. Out: a batch number per triangle, so that no ray crosses more layers of a batch
 //! than seven bits can count.
 
-use super::Frame;
+use super::Input;
 use super::pair::{Pair, Role};
 use super::placed::Placed;
 use super::sheets::sheets;
@@ -29,11 +29,11 @@ struct Item {
 
 /// Distributes casting triangles over batches.
 pub(super) fn spread(
-    frame: &Frame<'_>,
+    frame: &Input<'_>,
     kind: &LightKind,
     pairs: &mut [Pair],
     placed: &[Placed],
-    shape: &stack::Frame,
+    shape: &stack::Chart,
     work: &mut Work,
 ) {
     let items = items(frame, kind, pairs, placed);
@@ -55,7 +55,7 @@ pub(super) fn spread(
 }
 
 /// All casting triangles of one light, nearest caster first, nearest sheet first.
-fn items(frame: &Frame<'_>, kind: &LightKind, pairs: &[Pair], placed: &[Placed]) -> Vec<Item> {
+fn items(frame: &Input<'_>, kind: &LightKind, pairs: &[Pair], placed: &[Placed]) -> Vec<Item> {
     let light = kind.homogeneous();
     let mut items = Vec::new();
     let mut nearest = vec![f64::INFINITY; pairs.len()];
@@ -117,10 +117,10 @@ fn border(range: &Range<usize>, middle: usize, is_border: impl Fn(usize) -> bool
 
 /// Whether no ray crosses more than [`FOLDED`] layers of a run.
 fn is_within(
-    frame: &Frame<'_>,
+    frame: &Input<'_>,
     pairs: &[Pair],
     placed: &[Placed],
-    shape: &stack::Frame,
+    shape: &stack::Chart,
     run: &[Item],
     work: &mut Work,
 ) -> bool {

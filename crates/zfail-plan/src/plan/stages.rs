@@ -13,7 +13,7 @@ use super::pyramid::{self, Pyramid};
 use super::reach::Reach;
 use super::receivers::Receivers;
 use super::store::Store;
-use super::{Counting, Culled, Draw, Frame, FramePlan, LightPlan, LightStats, PlanError, Steps, ZPass, caps};
+use super::{Counting, Culled, Draw, FramePlan, Input, LightPlan, LightStats, PlanError, Steps, ZPass, caps};
 use crate::scissor::{self, Rectangle};
 use crate::volume::Volume;
 use glam::DVec4;
@@ -58,7 +58,7 @@ impl Planner {
     ///
     /// # Errors
     /// A caster's transform that cannot be inverted, or more indices than 32 bits can count.
-    pub fn plan(&mut self, frame: &Frame<'_>) -> Result<&FramePlan, PlanError> {
+    pub fn plan(&mut self, frame: &Input<'_>) -> Result<&FramePlan, PlanError> {
         self.plan_extracting(frame, &[])
     }
 
@@ -67,7 +67,7 @@ impl Planner {
     ///
     /// # Errors
     /// As [`Self::plan`].
-    pub fn plan_extracting(&mut self, frame: &Frame<'_>, extractable: &[bool]) -> Result<&FramePlan, PlanError> {
+    pub fn plan_extracting(&mut self, frame: &Input<'_>, extractable: &[bool]) -> Result<&FramePlan, PlanError> {
         let outcome = self.fill(frame, extractable);
         if outcome.is_err() {
             // Nothing half-planned may be drawn.
@@ -76,7 +76,7 @@ impl Planner {
         outcome.map(|()| &self.plan)
     }
 
-    fn fill(&mut self, frame: &Frame<'_>, extractable: &[bool]) -> Result<(), PlanError> {
+    fn fill(&mut self, frame: &Input<'_>, extractable: &[bool]) -> Result<(), PlanError> {
         let steps = match frame.counting {
             Counting::Verdict => frame.steps,
             Counting::Raw => frame.steps.keeping_counts(),
@@ -103,7 +103,7 @@ impl Planner {
 
     fn fill_placed(
         &mut self,
-        frame: &Frame<'_>,
+        frame: &Input<'_>,
         steps: Steps,
         extractable: &[bool],
         placed: &[Placed],
@@ -143,7 +143,7 @@ impl Planner {
     }
 
     /// Leaves silhouettes to the device where that is chosen and counts cannot wrap.
-    fn extract(&mut self, frame: &Frame<'_>, steps: Steps, extractable: &[bool], placed: &[Placed]) {
+    fn extract(&mut self, frame: &Input<'_>, steps: Steps, extractable: &[bool], placed: &[Placed]) {
         self.layers.clear();
         let lights = self.pairs.chunks_mut(placed.len());
         self.layers.extend(lights.map(|pairs| extraction::choose(frame, steps, extractable, pairs)));
@@ -164,7 +164,7 @@ impl Planner {
     }
 
     /// Decides the facing of all triangles of pairs that stay here and builds their sides, where they are not known.
-    fn weigh(&mut self, frame: &Frame<'_>) {
+    fn weigh(&mut self, frame: &Input<'_>) {
         self.in_parallel(
             frame,
             |pair, _| pair.is_stale(frame.view),
@@ -178,7 +178,7 @@ impl Planner {
     /// Runs `work` on every pair that wants it; on several threads only if there is anything to do.
     fn in_parallel(
         &mut self,
-        frame: &Frame<'_>,
+        frame: &Input<'_>,
         wanted: impl Fn(&Pair, usize) -> bool + Sync,
         work: impl Fn(&mut Pair, usize) + Sync,
     ) {
@@ -197,7 +197,7 @@ impl Planner {
     }
 
     /// Decides which casters of light `l` draw what and where, as far as boxes tell.
-    fn choose(&mut self, frame: &Frame<'_>, steps: Steps, l: usize, placed: &[Placed]) -> Result<(), PlanError> {
+    fn choose(&mut self, frame: &Input<'_>, steps: Steps, l: usize, placed: &[Placed]) -> Result<(), PlanError> {
         let (view, light) = (frame.view, &frame.lights[l]);
         if steps.reach {
             self.reach.set(&light.kind, view.eye());
@@ -269,7 +269,7 @@ impl Planner {
     }
 
     /// Idles casters in the shadow of convex ones.
-    fn leave_out_occluded(&mut self, frame: &Frame<'_>, steps: Steps, l: usize, placed: &[Placed], light: DVec4) {
+    fn leave_out_occluded(&mut self, frame: &Input<'_>, steps: Steps, l: usize, placed: &[Placed], light: DVec4) {
         let pairs = &mut self.pairs[l * placed.len()..(l + 1) * placed.len()];
         let most = usize::from(steps.occluders);
         if most == 0 || pairs.iter().filter(|pair| pair.role != Role::Idle).count() < 2 {
@@ -326,7 +326,7 @@ impl Planner {
     }
 
     /// Appends the draws of one light, batch by batch, z-pass before z-fail.
-    fn append(&mut self, frame: &Frame<'_>, steps: Steps, l: usize, placed: &[Placed]) -> Result<(), PlanError> {
+    fn append(&mut self, frame: &Input<'_>, steps: Steps, l: usize, placed: &[Placed]) -> Result<(), PlanError> {
         let Self { pairs, plan, store, .. } = self;
         let pairs = &mut pairs[l * placed.len()..(l + 1) * placed.len()];
         let FramePlan { indices, castings, draws, lights, changed } = plan;
@@ -400,18 +400,18 @@ impl Planner {
 }
 
 /// Whether nothing of a caster stands between the light and the near rectangle behind pixels `within`.
-fn is_clear(frame: &Frame<'_>, caster: &Placed, pair: &Pair, within: Rectangle) -> bool {
+fn is_clear(frame: &Input<'_>, caster: &Placed, pair: &Pair, within: Rectangle) -> bool {
     pyramid_of(frame, caster, pair, within).excludes(&caster.bounds)
 }
 
-fn pyramid_of(frame: &Frame<'_>, caster: &Placed, pair: &Pair, within: Rectangle) -> Pyramid {
+fn pyramid_of(frame: &Input<'_>, caster: &Placed, pair: &Pair, within: Rectangle) -> Pyramid {
     let slab = pyramid::near_slab(frame.view, within, pyramid::pad(frame.view, caster.reach));
     Pyramid::new(slab, &caster.object_from_relative(), pair.light)
 }
 
 /// Turns z-fail into z-pass where the count at the near rectangle is known, and adds those counts up.
 fn count_from_near_rectangle(
-    frame: &Frame<'_>,
+    frame: &Input<'_>,
     steps: Steps,
     light: &mut LightPlan,
     pairs: &mut [Pair],

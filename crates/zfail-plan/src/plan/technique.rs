@@ -73,7 +73,7 @@ pub struct Steps {
     pub near_count: bool,
     /// Close volumes at infinity by a fan over the silhouette where that is valid.
     pub fan: bool,
-    /// Draw a volume only where the surfaces that it can shadow lie (needs [`super::Frame::receivers`]).
+    /// Draw a volume only where the surfaces that it can shadow lie (needs [`super::Input::receivers`]).
     pub receivers: bool,
     /// Convex casters, per light, in whose shadow other casters are looked for to leave them out.
     pub occluders: u8,

@@ -1,7 +1,7 @@
 //! Whole bodies whose layers are known, by the boxes that they lie in.
 
 use super::cell::{self, Cell};
-use super::{DEPTH, Frame, Work};
+use super::{Chart, DEPTH, Work};
 use glam::{DVec3, DVec4};
 use std::ops::Range;
 
@@ -16,8 +16,8 @@ pub struct Body {
 impl Body {
     /// A body within the hull of `corners`, of which no ray crosses more than so many layers.
     #[must_use]
-    pub fn new(corners: [DVec3; 8], layers: usize, light: DVec4, frame: &Frame) -> Self {
-        Self { directions: corners.map(|p| frame.direction(p, light)), layers }
+    pub fn new(corners: [DVec3; 8], layers: usize, light: DVec4, chart: &Chart) -> Self {
+        Self { directions: corners.map(|p| chart.direction(p, light)), layers }
     }
 
     fn turned(&self, face: usize) -> Self {
@@ -27,12 +27,12 @@ impl Body {
 
 /// Whether no ray crosses more than `limit` layers of `bodies` (a "no" may be mistaken, a "yes" never is).
 #[must_use]
-pub fn are_within(bodies: &[Body], frame: &Frame, limit: usize, work: &mut Work) -> bool {
+pub fn are_within(bodies: &[Body], chart: &Chart, limit: usize, work: &mut Work) -> bool {
     if bodies.iter().map(|body| body.layers).sum::<usize>() <= limit {
         return true;
     }
     let mut stack = Vec::new();
-    (0..frame.faces()).all(|face| {
+    (0..chart.faces()).all(|face| {
         let turned: Vec<Body> = bodies.iter().map(|body| body.turned(face)).collect();
         stack.clear();
         stack.extend((0..turned.len() as u32).filter(|&i| !Cell::FACE.is_beside(&turned[i as usize].directions)));

@@ -62,7 +62,7 @@ impl Work {
 
 /// How directions are parametrised.
 #[derive(Clone, Debug)]
-pub enum Frame {
+pub enum Chart {
     /// All directions from a point, on the faces of a cube.
     Sphere,
     /// Parallel rays, told apart by where they cross a plane.
@@ -71,7 +71,7 @@ pub enum Frame {
         u: DVec3,
         /// Second axis of the plane.
         v: DVec3,
-        /// Its normal, towards the light; a right-handed frame with the axes.
+        /// Its normal, towards the light; a right-handed chart with the axes.
         normal: DVec3,
         /// Centre of the casters.
         center: DVec3,
@@ -80,8 +80,8 @@ pub enum Frame {
     },
 }
 
-impl Frame {
-    /// The frame for a homogeneous light and the bounding box of all casters.
+impl Chart {
+    /// The chart for a homogeneous light and the bounding box of all casters.
     #[must_use]
     pub fn new(light: DVec4, bounds: &crate::bounds::Bounds) -> Self {
         if light.w != 0.0 {
@@ -96,7 +96,7 @@ impl Frame {
         Self::Plane { u, v, normal, center: bounds.center(), scale }
     }
 
-    /// Where a ray from the light through `p` goes, in homogeneous coordinates of the frame.
+    /// Where a ray from the light through `p` goes, in homogeneous coordinates of the chart.
     fn direction(&self, p: DVec3, light: DVec4) -> DVec3 {
         match self {
             Self::Sphere => p * light.w - light.truncate(),
@@ -136,7 +136,7 @@ impl Frame {
     }
 }
 
-/// Maps a caster's points to directions of a [`Frame`].
+/// Maps a caster's points to directions of a [`Chart`].
 #[derive(Clone, Copy, Debug)]
 struct Sight {
     matrix: DMat3,

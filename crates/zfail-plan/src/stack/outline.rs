@@ -8,7 +8,7 @@
 
 use super::cell::{self, Cell, NOISE};
 use super::star::Spokes;
-use super::{DEPTH, Frame, Sight, Work};
+use super::{Chart, DEPTH, Sight, Work};
 use crate::casting::ObjectLight;
 use crate::topology::Topology;
 use glam::{DAffine3, DVec3};
@@ -84,7 +84,7 @@ pub struct Caster<'a> {
 /// Silhouettes of casters, together.
 #[derive(Clone, Debug)]
 pub struct Outline {
-    frame: Frame,
+    chart: Chart,
     edges: Vec<Edge>,
     vertices: u32,
     /// At [`Cell::reference`] of every face.
@@ -94,8 +94,8 @@ pub struct Outline {
 impl Outline {
     /// Of nothing.
     #[must_use]
-    pub fn new(frame: Frame) -> Self {
-        Self { layers: vec![0; frame.faces()], frame, edges: Vec::new(), vertices: 0 }
+    pub fn new(chart: Chart) -> Self {
+        Self { layers: vec![0; chart.faces()], chart, edges: Vec::new(), vertices: 0 }
     }
 
     /// Adds those `triangles` of a caster that have a weight, given their `silhouette`: every edge as often as it has sides,
@@ -106,7 +106,7 @@ impl Outline {
         silhouette: impl Iterator<Item = [u32; 2]>,
         triangles: impl Iterator<Item = usize>,
     ) {
-        let sight = self.frame.sight(caster.world_from_object, caster.light);
+        let sight = self.chart.sight(caster.world_from_object, caster.light);
         let first = self.edges.len();
         for edge in silhouette {
             let vertices =
@@ -150,7 +150,7 @@ impl Outline {
     pub fn is_within(&self, limit: usize, work: &mut Work) -> bool {
         let mut search =
             Search { edges: Vec::new(), limit: limit as i64, stack: Vec::new(), spokes: Spokes::default(), work };
-        (0..self.frame.faces()).all(|face| {
+        (0..self.chart.faces()).all(|face| {
             search.edges.clear();
             let turned = self.edges.iter().map(|edge| edge.turned(face));
             search.edges.extend(turned.filter(|edge| edge.may_meet(&Cell::FACE)));

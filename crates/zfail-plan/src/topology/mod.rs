@@ -64,6 +64,14 @@ pub enum TopologyError {
         /// How many entries came.
         found: usize,
     },
+    /// One entry per triangle is needed.
+    #[error("the mesh has {triangles} triangles, and the list of what they block has {found} entries")]
+    WrongBlocking {
+        /// How many triangles there are.
+        triangles: usize,
+        /// How many entries came.
+        found: usize,
+    },
     /// Only meshes made by [`Topology::bending`] bend.
     #[error("the mesh is rigid; meshes whose vertices move have to be declared so")]
     Rigid,
@@ -106,23 +114,24 @@ struct Fan {
     end: u32,
 }
 
-/// Incidence of one mesh.
+/// Incidence of one mesh. What is in it belongs together, so it can be read, and only vertices that bend can be moved
+/// ([`Topology::move_vertices`]).
 #[derive(Clone, Debug)]
 pub struct Topology {
     /// One position per distinct point, object space.
-    pub positions: Vec<[f32; 3]>,
+    pub(crate) positions: Vec<[f32; 3]>,
     /// Welded vertex ids of every triangle, in the order and rotation in which it is rendered.
-    pub triangles: Vec<[u32; 3]>,
+    pub(crate) triangles: Vec<[u32; 3]>,
     /// Connected part of each triangle, or [`NONE`] if it never casts (degenerate, or excluded by the caller).
-    pub part_of: Vec<u32>,
+    pub(crate) part_of: Vec<u32>,
     /// Parts connected through edges.
-    pub parts: Vec<Part>,
+    pub(crate) parts: Vec<Part>,
     /// Casting triangles, part by part.
-    pub by_part: Vec<u32>,
+    pub(crate) by_part: Vec<u32>,
     /// Groups of casting triangles over the same three points, in any order: duplicates and sheets with a back.
-    pub twins: Vec<Vec<u32>>,
+    pub(crate) twins: Vec<Vec<u32>>,
     /// Its largest convex part, if it has one of few faces.
-    pub convex: Option<ConvexPart>,
+    pub(crate) convex: Option<ConvexPart>,
     bounds: Bounds,
     /// Of a mesh that bends.
     bend: Option<bend::Bend>,
@@ -161,6 +170,48 @@ impl Topology {
             return Err(TopologyError::WrongLength { vertices: positions.len(), found: alike.len() });
         }
         Self::build(positions, triangles, Some(alike), |t| surface(t).into())
+    }
+
+    /// One position per distinct point, object space.
+    #[must_use]
+    pub fn positions(&self) -> &[[f32; 3]] {
+        &self.positions
+    }
+
+    /// Welded vertex ids of every triangle, in the order and rotation in which it is rendered.
+    #[must_use]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Connected part of each triangle, or [`NONE`] if it never casts (degenerate, or excluded by the caller).
+    #[must_use]
+    pub fn part_of(&self) -> &[u32] {
+        &self.part_of
+    }
+
+    /// Parts connected through edges.
+    #[must_use]
+    pub fn parts(&self) -> &[Part] {
+        &self.parts
+    }
+
+    /// Casting triangles, part by part.
+    #[must_use]
+    pub fn by_part(&self) -> &[u32] {
+        &self.by_part
+    }
+
+    /// Groups of casting triangles over the same three points, in any order: duplicates and sheets with a back.
+    #[must_use]
+    pub fn twins(&self) -> &[Vec<u32>] {
+        &self.twins
+    }
+
+    /// Its largest convex part, if it has one of few faces.
+    #[must_use]
+    pub fn convex(&self) -> Option<&ConvexPart> {
+        self.convex.as_ref()
     }
 
     fn build(

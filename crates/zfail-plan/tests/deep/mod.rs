@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 use zfail_plan::glam::{DAffine3, DVec3};
 use zfail_plan::light::LightKind;
-use zfail_plan::plan::{Caster, Counting, Frame, FramePlan, Planner, ShadowLight, Technique};
+use zfail_plan::plan::{Caster, Counting, FramePlan, Input, Planner, ShadowLight, Technique};
 use zfail_plan::topology::Topology;
 use zfail_plan::view::{Projection, View};
 
@@ -53,7 +53,7 @@ impl Tower {
     }
 
     pub fn triangles(&self) -> usize {
-        self.topology.triangles.len() * self.places.len()
+        self.topology.triangles().len() * self.places.len()
     }
 
     /// Everything is drawn, so that light caps tell what is in which batch.
@@ -67,7 +67,7 @@ impl Tower {
         let view = View::new(DAffine3::from_translation(DVec3::Z * 20.0), projection, [320, 200]);
         let lights = [ShadowLight { kind: self.light, excluded: &[] }];
         let (steps, counting) = (Technique::EverittKilgard.into(), Counting::Verdict);
-        let frame = Frame { view: &view, casters: &casters, lights: &lights, receivers: &[], steps, counting };
+        let frame = Input { view: &view, casters: &casters, lights: &lights, receivers: &[], steps, counting };
         let mut planner = Planner::new();
         planner.plan(&frame).unwrap();
         planner.last().clone()

@@ -61,15 +61,17 @@ impl Renderer<'_> {
             }
             if settings.shadows {
                 let lights: Vec<_> = chosen.iter().map(|&l| (l, self.scene.lights[l].kind)).collect();
-                self.scene.plan(gpu, view, &lights, settings, counting, None)?;
-                if targets.stored_depth.is_some() {
-                    self.scene.plan_tiles(gpu, settings)?;
-                }
+                let readable = targets.stored_depth.is_some();
+                self.scene.plan(gpu, view, &lights, settings, counting, None, readable)?;
             }
+            let mut prepared = self.scene.shadows.prepared().filter(|_| settings.shadows);
             for (light, &of_scene) in chosen.iter().enumerate() {
                 let mut encoder = encoder();
-                if settings.shadows {
-                    shadow.encode(&mut encoder, targets, &self.scene.shadows, light, &gpu.device);
+                if let (Some(frame), Some(depth), 0) = (prepared, &targets.stored_depth, light) {
+                    prepared = Some(frame.count_tiles(&mut encoder, depth));
+                }
+                if let Some(prepared) = &prepared {
+                    shadow.encode(&mut encoder, targets, prepared, light);
                 }
                 let casting = settings.shadows.then_some((&self.scene, of_scene));
                 images.push(mask.read(gpu, encoder, targets, &self.frame, light as u32, what, casting)?);

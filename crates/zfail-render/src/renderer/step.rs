@@ -12,7 +12,6 @@ use crate::pipeline::{cleared, cleared_depth, continued, read_only};
 use crate::verdict_pass::{Verdict, VerdictPass, VerdictTargets};
 use crate::{RenderError, Settings, lights, tone_map};
 use half::f16;
-use zfail::LightStats;
 use zfail_plan::light::LightKind;
 use zfail_plan::view::View;
 
@@ -24,7 +23,6 @@ impl Renderer<'_> {
         view: &View,
         active: &[usize],
         kinds: &[LightKind],
-        figures: &[LightStats],
         exposed: &Exposed,
         part: &Part,
         added: bool,
@@ -70,15 +68,11 @@ impl Renderer<'_> {
         let depth_stencil = targets.depth_stencil.clone();
         if shadowed {
             let bits = shadows == Shadows::Bits;
-            let volumes = &scene.shadows;
-            let pass =
-                self.verdicts.entry((samples, bits)).or_insert_with(|| VerdictPass::new(gpu, volumes, samples, bits));
+            let pass = self.verdicts.entry((samples, bits));
+            let pass = pass.or_insert_with(|| VerdictPass::new(gpu, &scene.shadows, samples, bits));
             pass.prepare(gpu, layouts, scene, layered);
-            let verdicts = lights.iter().map(|&light| Verdict {
-                light,
-                scissor: Some(figures[light].scissor).filter(|_| figures[light].has_shadow()),
-                span: spans.light(light).filter(|_| part.solid),
-            });
+            let verdicts =
+                lights.iter().map(|&light| Verdict { light, span: spans.light(light).filter(|_| part.solid) });
             let (view, depth_stencil, depth) = if layered {
                 let layer = targets.layer(gpu, layouts);
                 (Some(layer.verdicts.view.clone()), layer.depth_stencil.clone(), layer.depth.clone())
@@ -86,11 +80,12 @@ impl Renderer<'_> {
                 let view = bits.then(|| targets.verdicts(gpu, layouts).view.clone());
                 (view, depth_stencil.clone(), targets.depth.clone())
             };
-            let depth = depth.filter(|_| volumes.counts_tiles());
-            let tiles = depth.as_ref().map(|depth| (&gpu.device, depth));
+            let prepared = scene.shadows.prepared().ok_or_else(no_targets)?;
+            let depth = depth.as_ref().filter(|_| prepared.has_tiles());
             let targets =
-                VerdictTargets { verdicts: view.as_ref(), depth_stencil: &depth_stencil, tiles, layered, ground };
-            pass.encode(&mut encoder, &targets, &self.frame, scene, verdicts, (timer, part.solid.then_some(0)));
+                VerdictTargets { verdicts: view.as_ref(), depth_stencil: &depth_stencil, depth, layered, ground };
+            let timer = (timer, part.solid.then_some(0));
+            pass.encode(&mut encoder, &targets, &self.frame, scene, prepared, verdicts, timer);
         }
 
         let solid = scene.draws.solid.iter().filter(|_| part.solid);

@@ -4,7 +4,9 @@
 //! idle. Nothing is drawn: both ways draw much the same.
 
 use super::CostModel;
-use crate::{Caster, Counting, Frame, LightKind, MeshId, ShadowLight, Shadows, Silhouettes, Steps, Technique};
+use crate::{
+    Caster, Counting, Frame, LightKind, MeshDescriptor, MeshId, ShadowLight, Shadows, Silhouettes, Steps, Technique,
+};
 use glam::{DAffine3, DVec3};
 use std::f64::consts::TAU;
 use std::time::Instant;
@@ -20,8 +22,8 @@ const FRAMES: u32 = 5;
 pub(super) fn measure(device: &Device, queue: &Queue, model: CostModel) -> Option<CostModel> {
     let [large, small] = SIZES.map(|[along, around]| f64::from(2 * along * around));
     // The pipelines are the same for both.
-    let mut shadows = Shadows::new(device);
-    let [large_ring, small_ring] = SIZES.map(|size| ring(&mut shadows, device, queue, size));
+    let mut shadows = Shadows::new(device, queue);
+    let [large_ring, small_ring] = SIZES.map(|size| ring(&mut shadows, size));
     let (large_ring, small_ring) = (large_ring?, small_ring?);
     let mut times = |silhouettes| {
         let mut time = |mesh| measure_mesh(&mut shadows, device, queue, mesh, silhouettes);
@@ -35,7 +37,7 @@ pub(super) fn measure(device: &Device, queue: &Queue, model: CostModel) -> Optio
     Some(CostModel { cpu_triangle_ns, gpu_triangle_ns, gpu_caster_ns, ..model })
 }
 
-fn ring(shadows: &mut Shadows, device: &Device, queue: &Queue, [along, around]: [u32; 2]) -> Option<MeshId> {
+fn ring(shadows: &mut Shadows, [along, around]: [u32; 2]) -> Option<MeshId> {
     let id = |i: u32, j: u32| i % along * around + j % around;
     let grid = || (0..along).flat_map(|i| (0..around).map(move |j| (i, j)));
     let vertex = |(i, j): (u32, u32)| {
@@ -46,7 +48,7 @@ fn ring(shadows: &mut Shadows, device: &Device, queue: &Queue, [along, around]: 
     let quad = |(i, j)| [[id(i, j), id(i, j + 1), id(i + 1, j + 1)], [id(i, j), id(i + 1, j + 1), id(i + 1, j)]];
     let positions: Vec<[f32; 3]> = grid().map(vertex).collect();
     let triangles: Vec<[u32; 3]> = grid().flat_map(quad).collect();
-    shadows.add_mesh(device, queue, &positions, &triangles, |_| true).ok()
+    shadows.add_mesh(&MeshDescriptor { positions: &positions, triangles: &triangles, ..MeshDescriptor::default() }).ok()
 }
 
 /// Nanoseconds of a frame in which the light of one mesh has moved.
@@ -57,7 +59,7 @@ fn measure_mesh(
     mesh: MeshId,
     silhouettes: Silhouettes,
 ) -> Option<f64> {
-    let casters = [Caster { mesh, world_from_object: DAffine3::IDENTITY }];
+    let casters = [Caster::new(mesh, DAffine3::IDENTITY)];
     let view = View::new(
         DAffine3::from_translation(5.0 * DVec3::Z),
         Projection::Perspective { yfov: 1.0, near: 0.1, far: None },
@@ -67,12 +69,11 @@ fn measure_mesh(
     let mut least = f64::INFINITY;
     for frame in 0..FRAMES {
         let position = DVec3::new(2.0 + 1e-3 * f64::from(frame), 5.0, 3.0);
-        let lights = [ShadowLight { kind: LightKind::Point { position, range: f64::INFINITY }, excluded: &[] }];
+        let lights = [ShadowLight::new(LightKind::Point { position, range: f64::INFINITY })];
         // Counts, not verdicts: no proof that they do not wrap, which either way may need or may have.
-        let counting = Counting::Raw;
-        let frame = Frame { view: &view, casters: &casters, lights: &lights, receivers: &[], steps, counting };
+        let frame = Frame::new(&view, &casters, &lights).steps(steps).counting(Counting::Raw);
         let start = Instant::now();
-        shadows.prepare(device, queue, &frame).ok()?;
+        shadows.prepare(&frame).ok()?;
         // What is only written goes to the device with the next submission.
         queue.submit([]);
         device.poll(PollType::wait_indefinitely()).ok()?;

@@ -51,19 +51,19 @@ impl Room {
 
 impl Incidence {
     pub fn new(topology: &Topology) -> Self {
-        let part = |t: usize| match topology.part_of[t] {
+        let part = |t: usize| match topology.part_of()[t] {
             NONE => NONE,
-            part if topology.parts[part as usize].cover == Cover::Nowhere => part,
+            part if topology.parts()[part as usize].cover == Cover::Nowhere => part,
             part => part | HIGH,
         };
         let triangle = |(t, &[a, b, c]): (usize, &[u32; 3])| [a, b, c, part(t)];
         let mut incidence = Self {
-            triangles: topology.triangles.iter().enumerate().map(triangle).collect(),
+            triangles: topology.triangles().iter().enumerate().map(triangle).collect(),
             edges: Vec::new(),
             pairs: 0,
             fan_triangles: Vec::new(),
-            apex: topology.by_part.first().map_or(0, |&t| topology.triangles[t as usize][0]),
-            parts: topology.parts.iter().map(|part| part.triangles.end - part.triangles.start).collect(),
+            apex: topology.by_part().first().map_or(0, |&t| topology.triangles()[t as usize][0]),
+            parts: topology.parts().iter().map(|part| part.triangles.end - part.triangles.start).collect(),
             sides: [0; 2],
         };
         let mut fans = Vec::new();

@@ -118,10 +118,10 @@ impl Silhouettes {
 
     /// The bytes of lists with room for any volume of `mesh`; `None` if the device has no such buffers.
     pub fn bytes(limits: &Limits, mesh: &Mesh) -> Option<u64> {
-        let triangles = mesh.topology.by_part.len() as u64;
+        let triangles = mesh.topology.by_part().len() as u64;
         let limit = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size).min(u64::from(u32::MAX));
         // Edges are no more than three times the triangles, and take 16 bytes as these do.
-        let static_bytes = 3 * 16 * mesh.topology.triangles.len() as u64;
+        let static_bytes = 3 * 16 * mesh.topology.triangles().len() as u64;
         let bytes = 4 * Room::most(triangles).total();
         (bytes.max(static_bytes) <= limit).then_some(bytes)
     }

@@ -232,8 +232,8 @@ fn volumes_of_the_device_are_closed() {
 fn lists_follow_vertices_that_move() {
     let Some(device) = device() else { return };
     let rigid = ring();
-    let alike: Vec<u32> = (0..rigid.positions.len() as u32).collect();
-    let topology = Topology::bending(&rigid.positions, &rigid.triangles, &alike, |_| true).expect("mesh");
+    let alike: Vec<u32> = (0..rigid.positions().len() as u32).collect();
+    let topology = Topology::bending(rigid.positions(), rigid.triangles(), &alike, |_| true).expect("mesh");
     let (mut bench, light) = (Bench::new(&device, &topology), LIGHTS[0]);
     let castings = castings(&topology, light);
     let mut before = bench.listed(light, &castings, DarkCap::Triangles);
@@ -241,7 +241,7 @@ fn lists_follow_vertices_that_move() {
         assert_eq!(bench.listed(light, &castings, DarkCap::Triangles), before);
         assert!(bench.silhouettes.stale.is_empty(), "nothing has moved");
         let bent: Vec<[f32; 3]> =
-            rigid.positions.iter().map(|&[x, y, z]| [x, y + 0.3 * turn as f32 * x * x, z]).collect();
+            rigid.positions().iter().map(|&[x, y, z]| [x, y + 0.3 * turn as f32 * x * x, z]).collect();
         bench.arena.move_vertices(&device.1, bench.slot, bench.serial, &bent).expect("as many positions");
         let now = bench.listed(light, &castings, DarkCap::Triangles);
         assert_eq!(now, expected(&bench.mesh().topology, light, &castings), "turn {turn}");
@@ -258,12 +258,12 @@ fn there_is_room_for_any_volume() {
         let incidence = Incidence::new(&topology);
         for light in LIGHTS {
             for casting in [Casting::Front, Casting::Back, Casting::Double] {
-                let castings = vec![casting; topology.parts.len()];
+                let castings = vec![casting; topology.parts().len()];
                 let (lists, room) = (expected(&topology, light, &castings), incidence.room(&castings));
                 for (list, room) in lists.iter().zip(room.0) {
                     assert!(3 * list.len() as u64 <= room, "{casting:?}: {} triangles, {room} indices", list.len());
                 }
-                let most = Room::most(topology.by_part.len() as u64);
+                let most = Room::most(topology.by_part().len() as u64);
                 assert!(room.0.iter().zip(most.0).all(|(room, most)| *room <= most), "{room:?} {most:?}");
             }
         }

@@ -3,7 +3,8 @@
 
 use wgpu::util::DeviceExt;
 use zfail::glam::{DAffine3, DVec3};
-use zfail::{Bounds, Caster, Counting, Frame, FramePlan, LightKind, MeshId, ShadowLight, Shadows, Steps, Target};
+use zfail::low_level::{self, FramePlan};
+use zfail::{Bounds, Caster, Counting, Frame, LightKind, MeshDescriptor, ShadowLight, Shadows, Steps, Target};
 use zfail::{Technique, View};
 
 /// A mesh as tests write it.
@@ -62,16 +63,13 @@ impl Default for Setup {
     }
 }
 
-/// A device with what the set-up asks for, or `None` (with a printed reason) where there is no adapter.
-pub fn device(setup: &Setup) -> Option<(wgpu::Device, wgpu::Queue)> {
+/// A device with what the set-up asks for.
+pub fn device(setup: &Setup) -> (wgpu::Device, wgpu::Queue) {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY);
     let instance = wgpu::Instance::new(descriptor);
     let options = wgpu::RequestAdapterOptions::default();
-    let Ok(adapter) = pollster::block_on(instance.request_adapter(&options)) else {
-        println!("skipped: no graphics adapter found");
-        return None;
-    };
+    let adapter = pollster::block_on(instance.request_adapter(&options)).expect("a graphics adapter");
     let mut features = zfail::wanted_features(adapter.features());
     if !setup.clip_control {
         features.remove(wgpu::Features::DEPTH_CLIP_CONTROL);
@@ -81,7 +79,7 @@ pub fn device(setup: &Setup) -> Option<(wgpu::Device, wgpu::Queue)> {
         required_limits: adapter.limits(),
         ..wgpu::DeviceDescriptor::default()
     };
-    Some(pollster::block_on(adapter.request_device(&descriptor)).expect("device"))
+    pollster::block_on(adapter.request_device(&descriptor)).expect("device")
 }
 
 const DEPTH: &str = "
@@ -92,9 +90,9 @@ struct Out { @invariant @builtin(position) clip: vec4<f32> }
 }";
 
 /// The stencil of sample 0 of every pixel after the volumes of the one light, row by row.
-pub fn stencil(setup: &Setup, view: &View, meshes: &[(Soup, DAffine3)], light: LightKind) -> Option<Vec<u8>> {
-    let (device, queue) = device(setup)?;
-    Some(draw(&device, &queue, setup, view, meshes, light, |_| {}).0)
+pub fn stencil(setup: &Setup, view: &View, meshes: &[(Soup, DAffine3)], light: LightKind) -> Vec<u8> {
+    let (device, queue) = device(setup);
+    draw(&device, &queue, setup, view, meshes, light, |_| {}).0
 }
 
 /// The same on a device that is there, with a plan that `edit` may change; also returns the plan.
@@ -107,26 +105,26 @@ pub fn draw(
     light: LightKind,
     edit: impl FnOnce(&mut FramePlan),
 ) -> (Vec<u8>, FramePlan) {
-    let mut shadows = Shadows::new(device);
+    let mut shadows = Shadows::new(device, queue);
     let target = Target { colors: &[], depth_stencil: setup.depth_stencil, samples: setup.samples };
-    let pipelines = shadows.pipelines(device, &target);
+    let pipelines = shadows.pipelines(&target);
     let casters: Vec<Caster> = meshes
         .iter()
         .map(|((positions, triangles), world_from_object)| {
-            let mesh: MeshId = shadows.add_mesh(device, queue, positions, triangles, |_| true).expect("mesh");
-            Caster { mesh, world_from_object: *world_from_object }
+            let mesh = MeshDescriptor { positions, triangles, ..MeshDescriptor::default() };
+            Caster::new(shadows.add_mesh(&mesh).expect("mesh"), *world_from_object)
         })
         .collect();
-    let lights = [ShadowLight { kind: light, excluded: &[] }];
+    let lights = [ShadowLight::new(light)];
     let placed = |(soup, place): &(Soup, DAffine3)| {
         let corners = soup.0.iter().map(|p| place.transform_point3(glam::Vec3::from_array(*p).as_dvec3()));
         Bounds::of(corners)
     };
     let receivers: Vec<Bounds> = meshes.iter().map(placed).collect();
-    let (steps, counting) = (setup.steps, setup.counting);
-    let frame = Frame { view, casters: &casters, lights: &lights, receivers: &receivers, steps, counting };
-    shadows.prepare(device, queue, &frame).expect("plan");
-    shadows.edit_plan(edit);
+    let frame = Frame::new(view, &casters, &lights).receivers(&receivers).steps(setup.steps).counting(setup.counting);
+    shadows.prepare(&frame.tile_pass(setup.samples == 1)).expect("plan");
+    low_level::edit_plan(&mut shadows, edit);
+    let prepared = shadows.prepared().expect("a frame");
 
     let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: None,
@@ -152,15 +150,12 @@ pub fn draw(
             draw_depth(device, &mut pass, setup, view, meshes);
         }
     }
-    if setup.samples == 1 {
-        shadows.prepare_tiles(device, queue).expect("tiles");
-        shadows.count_tiles(device, &mut encoder, &depth);
-    }
-    shadows.draw(&mut begin(&mut encoder, &attachment, wgpu::LoadOp::Load), &pipelines, 0);
-    (read_stencil(device, queue, encoder, &texture), shadows.plan().clone())
+    let prepared = prepared.count_tiles(&mut encoder, &depth);
+    prepared.draw(&mut begin(&mut encoder, &attachment, wgpu::LoadOp::Load), &pipelines, 0);
+    (read_stencil(device, queue, encoder, &texture), low_level::plan(&prepared).clone())
 }
 
-fn begin<'e>(
+pub fn begin<'e>(
     encoder: &'e mut wgpu::CommandEncoder,
     attachment: &wgpu::TextureView,
     depth: wgpu::LoadOp<f32>,

@@ -1,9 +1,17 @@
-//! The host's image against rays, and against itself without shadows.
+//! The images of the example host against rays, and against themselves without shadows.
 
-use zfail::LightKind;
 use zfail::glam::DVec3;
-use zfail_example_host::scene::{Scene, scene, view};
-use zfail_example_host::{Error, Host};
+use zfail::{LightKind, View};
+
+#[path = "../examples/host/forward.rs"]
+mod forward;
+#[path = "../examples/host/scene.rs"]
+mod scene;
+
+use forward::Host;
+use scene::{Scene, scene, view};
+
+type Error = Box<dyn std::error::Error>;
 
 const SIZE: [u32; 2] = [192, 108];
 
@@ -33,8 +41,7 @@ fn hit([a, b, c]: &[DVec3; 3], origin: DVec3, along: DVec3) -> Option<f64> {
 }
 
 /// Per light whether it reaches what pixel (x, y) sees; `None` where nothing is seen.
-fn reached(scene: &Scene, all: &[[DVec3; 3]], x: f64, y: f64) -> Option<Vec<bool>> {
-    let view = view(SIZE);
+fn reached(scene: &Scene, view: &View, all: &[[DVec3; 3]], x: f64, y: f64) -> Option<Vec<bool>> {
     let tangent = (0.5_f64 * 0.8).tan();
     let ndc = [2.0 * x / f64::from(SIZE[0]) - 1.0, 1.0 - 2.0 * y / f64::from(SIZE[1])];
     let along = DVec3::new(ndc[0] * tangent * view.aspect(), ndc[1] * tangent, -1.0);
@@ -55,18 +62,17 @@ fn reached(scene: &Scene, all: &[[DVec3; 3]], x: f64, y: f64) -> Option<Vec<bool
 }
 
 /// Pixels whose whole neighbourhood has one verdict, and which of them contradict the image pair.
-fn compare(with: &[u8], without: &[u8]) -> (usize, usize) {
-    let scene = scene();
+fn compare(time: f64, with: &[u8], without: &[u8]) -> (usize, usize) {
+    let (scene, view) = (scene(time), view(time, SIZE));
     let all = triangles(&scene);
     let (mut checked, mut wrong) = (0, 0);
     for y in (1..SIZE[1] - 1).step_by(3) {
         for x in (1..SIZE[0] - 1).step_by(3) {
-            let at = |dx: f64, dy: f64| reached(&scene, &all, f64::from(x) + dx, f64::from(y) + dy);
+            let at = |dx: f64, dy: f64| reached(&scene, &view, &all, f64::from(x) + dx, f64::from(y) + dy);
             let Some(verdict) = at(0.5, 0.5) else { continue };
-            if [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)]
-                .iter()
-                .any(|&(dx, dy)| at(dx, dy).as_ref() != Some(&verdict))
-            {
+            // Nothing thinner than a quarter of a pixel goes unnoticed.
+            let steps = || (0..25).map(|i| (f64::from(i % 5) / 4.0, f64::from(i / 5) / 4.0));
+            if steps().any(|(dx, dy)| at(dx, dy).as_ref() != Some(&verdict)) {
                 continue;
             }
             let i = ((y * SIZE[0] + x) * 4) as usize;
@@ -86,24 +92,25 @@ fn compare(with: &[u8], without: &[u8]) -> (usize, usize) {
 }
 
 #[test]
-fn the_image_has_the_shadows_that_rays_find() -> Result<(), Error> {
-    let Ok(host) = Host::new() else {
-        println!("skipped: no graphics adapter found");
-        return Ok(());
-    };
-    let (scene, view) = (scene(), view(SIZE));
-    let with = host.render(&scene, &view, true)?;
-    let without = host.render(&scene, &view, false)?;
-    let (checked, wrong) = compare(&with, &without);
-    assert!(checked > 1000, "{checked} pixels checked");
-    assert_eq!(wrong, 0, "{wrong} of {checked} pixels contradict the rays");
+fn the_images_have_the_shadows_that_rays_find() -> Result<(), Error> {
+    let mut host = Host::new(&scene(0.0), SIZE)?;
+    for time in [0.0, 2.5] {
+        let (scene, view) = (scene(time), view(time, SIZE));
+        let with = host.render(&scene, &view, true)?;
+        let without = host.render(&scene, &view, false)?;
+        let (checked, wrong) = compare(time, &with, &without);
+        assert!(checked > 1000, "{checked} pixels checked");
+        assert_eq!(wrong, 0, "{wrong} of {checked} pixels contradict the rays at {time} s");
 
-    // Negative control: the same comparison notices that the shadows are missing, or that they moved.
-    let (_, missing) = compare(&without, &without);
-    assert!(missing > 3, "{missing} pixels noticed without shadows");
-    let mut moved = with.clone();
-    moved.rotate_left(SIZE[0] as usize * 4 * 3);
-    let (_, shifted) = compare(&moved, &without);
-    assert!(shifted > 50, "{shifted} pixels noticed with moved shadows");
+        // Negative control: the same comparison notices that the shadows are missing, or that they moved.
+        let (_, missing) = compare(time, &without, &without);
+        assert!(missing > 3, "{missing} pixels noticed without shadows");
+        let mut moved = with.clone();
+        moved.rotate_left(SIZE[0] as usize * 4 * 3);
+        let (_, shifted) = compare(time, &moved, &without);
+        assert!(shifted > 50, "{shifted} pixels noticed with moved shadows");
+        let (_, stale) = compare(2.5 - time, &with, &without);
+        assert!(stale > 50, "{stale} pixels noticed with the shadows of another moment");
+    }
     Ok(())
 }

@@ -1,4 +1,5 @@
-//! What the example shows: a ring of boxes, an open bowl and a leaning sheet on a floor, under a lamp and a sun.
+//! What the example shows: a ring of boxes, an open bowl and a leaning sheet on a floor, under a lamp and a sun. The boxes turn,
+//! the lamp rises, and the camera goes round them.
 
 use zfail::glam::{DAffine3, DMat3, DQuat, DVec3};
 use zfail::{LightKind, Projection, View};
@@ -39,9 +40,9 @@ pub struct Scene {
     pub lights: Vec<Light>,
 }
 
-/// The scene of the example.
+/// The scene of the example at a time, seconds. Its meshes are the same at any.
 #[must_use]
-pub fn scene() -> Scene {
+pub fn scene(time: f64) -> Scene {
     let floor = quads(&[[[-30., 0., -30.], [-30., 0., 30.], [30., 0., 30.], [30., 0., -30.]]]);
     let sheet = quads(&[[[-0.8, 0., 0.], [0.8, 0., 0.], [0.8, 1.6, 0.], [-0.8, 1.6, 0.]]]);
     let place = |translation: DVec3, rotation: DQuat| DAffine3 { matrix3: DMat3::from_quat(rotation), translation };
@@ -56,7 +57,7 @@ pub fn scene() -> Scene {
         ),
     ];
     for i in 0..7 {
-        let angle = f64::from(i) / 7.0 * std::f64::consts::TAU;
+        let angle = f64::from(i) / 7.0 * std::f64::consts::TAU + 0.2 * time;
         let at = DVec3::new(2.2 * angle.cos(), 0.4, 2.2 * angle.sin());
         // Every second box is mirrored.
         let mirror = DMat3::from_diagonal(DVec3::new(if i % 2 == 0 { 0.3 } else { -0.3 }, 0.4, 0.2));
@@ -68,7 +69,7 @@ pub fn scene() -> Scene {
         objects,
         lights: vec![
             Light {
-                kind: LightKind::Point { position: DVec3::new(0.15, 0.85, 0.1), range: f64::INFINITY },
+                kind: LightKind::Point { position: DVec3::new(0.15, 0.85 + 0.3 * time, 0.1), range: f64::INFINITY },
                 color: [3.4, 2.3, 1.3],
             },
             Light {
@@ -79,17 +80,12 @@ pub fn scene() -> Scene {
     }
 }
 
-/// The camera of the example.
+/// The camera of the example at a time.
 #[must_use]
-pub fn view(size: [u32; 2]) -> View {
-    let eye = DVec3::new(2.6, 3.1, 3.9);
-    let back = (eye - DVec3::new(0.0, 0.35, 0.0)).normalize();
-    let right = DVec3::Y.cross(back).normalize();
-    View::new(
-        DAffine3 { matrix3: DMat3::from_cols(right, back.cross(right), back), translation: eye },
-        Projection::Perspective { yfov: 0.8, near: 0.1, far: None },
-        size,
-    )
+pub fn view(time: f64, size: [u32; 2]) -> View {
+    let eye = DQuat::from_rotation_y(0.15 * time) * DVec3::new(2.6, 3.1, 3.9);
+    let projection = Projection::Perspective { yfov: 0.8, near: 0.1, far: None };
+    View::looking_at(eye, DVec3::new(0.0, 0.35, 0.0), DVec3::Y, projection, size)
 }
 
 fn quads(corners: &[[[f32; 3]; 4]]) -> Mesh {

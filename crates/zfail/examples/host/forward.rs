@@ -1,12 +1,12 @@
 //! The host's renderer: pipelines, buffers and passes of its own.
 
-use crate::Error;
-use crate::scene::{Light, Scene};
+use super::Error;
+use super::scene::{self, Light, Scene};
 use bytemuck::{Pod, Zeroable};
 use wgpu::BufferUsages;
 use wgpu::util::DeviceExt;
 use zfail::glam::DMat4;
-use zfail::{Counting, Frame, LightKind, ShadowLight, Shadows, Target, Technique, View};
+use zfail::{Caster, Frame, LightKind, MeshDescriptor, MeshId, Pipelines, ShadowLight, Shadows, Target, View, wgpu};
 
 const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 const SAMPLES: u32 = 4;
@@ -26,22 +26,39 @@ struct LightUniform {
     color: [f32; 4],
 }
 
-/// A device and everything that lives as long as it.
+/// A device and everything that lives as long as it: made once, whatever moves.
 pub struct Host {
     device: wgpu::Device,
     queue: wgpu::Queue,
-    depth_stencil: wgpu::TextureFormat,
     ambient: wgpu::RenderPipeline,
     lit: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
+    meshes: Vec<Mesh>,
+    targets: Targets,
+    shadows: Shadows,
+    volumes: Pipelines,
+}
+
+/// A mesh on the device, and as zfail knows it.
+struct Mesh {
+    vertices: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    count: u32,
+    caster: MeshId,
+}
+
+struct Targets {
+    color: wgpu::Texture,
+    depth: wgpu::Texture,
+    image: wgpu::Texture,
 }
 
 impl Host {
-    /// A host on any adapter there is.
+    /// A host on any adapter there is, for images of `size`.
     ///
     /// # Errors
     /// No adapter, or no device.
-    pub fn new() -> Result<Self, Error> {
+    pub fn new(scene: &Scene, size: [u32; 2]) -> Result<Self, Error> {
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
         descriptor.backends = wgpu::Backends::PRIMARY;
         let instance = wgpu::Instance::new(descriptor);
@@ -51,6 +68,21 @@ impl Host {
             ..wgpu::DeviceDescriptor::default()
         }))?;
         let depth_stencil = zfail::depth_stencil_format(device.features());
+
+        // Shadows, part one: register the meshes.
+        let mut shadows = Shadows::new(&device, &queue);
+        let volumes = shadows.pipelines(&Target { colors: &[Some(COLOR)], depth_stencil, samples: SAMPLES });
+        let mut meshes = Vec::new();
+        for scene::Mesh { positions, triangles } in &scene.meshes {
+            let caster = shadows.add_mesh(&MeshDescriptor { positions, triangles, ..MeshDescriptor::default() })?;
+            meshes.push(Mesh {
+                vertices: buffer(&device, bytemuck::cast_slice(positions), BufferUsages::VERTEX),
+                indices: buffer(&device, bytemuck::cast_slice(triangles), BufferUsages::INDEX),
+                count: triangles.len() as u32 * 3,
+                caster,
+            });
+        }
+
         let entry = |binding| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
@@ -65,128 +97,57 @@ impl Host {
             label: Some("object and light"),
             entries: &[entry(0), entry(1)],
         });
-        let ambient = pipeline(&device, &layout, depth_stencil, false);
-        let lit = pipeline(&device, &layout, depth_stencil, true);
-        Ok(Self { device, queue, depth_stencil, ambient, lit, layout })
+        let targets = Targets {
+            color: texture(&device, size, COLOR, SAMPLES, wgpu::TextureUsages::empty()),
+            depth: texture(&device, size, depth_stencil, SAMPLES, wgpu::TextureUsages::empty()),
+            image: texture(&device, size, COLOR, 1, wgpu::TextureUsages::COPY_SRC),
+        };
+        let [ambient, lit] = [false, true].map(|lit| pipeline(&device, &layout, depth_stencil, lit));
+        Ok(Self { device, queue, ambient, lit, layout, meshes, targets, shadows, volumes })
     }
 
-    /// Renders the scene; RGBA, 8 bits, sRGB, rows from the top.
+    /// Renders a moment of the scene whose meshes were uploaded; RGBA, 8 bits, sRGB, rows from the top.
     ///
     /// # Errors
     /// Whatever zfail or the device reports.
-    pub fn render(&self, scene: &Scene, view: &View, with_shadows: bool) -> Result<Vec<u8>, Error> {
-        let (device, queue) = (&self.device, &self.queue);
-
-        // Shadows, part one: register the meshes, say what casts and what shines.
-        let mut shadows = Shadows::new(device);
-        let target = Target { colors: &[Some(COLOR)], depth_stencil: self.depth_stencil, samples: SAMPLES };
-        let volumes = shadows.pipelines(device, &target);
-        let mut meshes = Vec::new();
-        for mesh in &scene.meshes {
-            meshes.push(shadows.add_mesh(device, queue, &mesh.positions, &mesh.triangles, |_| true)?);
-        }
-        let caster =
-            |o: &crate::scene::Object| zfail::Caster { mesh: meshes[o.mesh], world_from_object: o.world_from_object };
+    pub fn render(&mut self, scene: &Scene, view: &View, with_shadows: bool) -> Result<Vec<u8>, Error> {
+        // Shadows, part two: say what casts and what shines in this frame.
+        let caster = |o: &scene::Object| Caster::new(self.meshes[o.mesh].caster, o.world_from_object);
         let casters: Vec<_> = scene.objects.iter().map(caster).collect();
-        let lights: Vec<_> = scene.lights.iter().map(|l| ShadowLight { kind: l.kind, excluded: &[] }).collect();
-        shadows.prepare(
-            device,
-            queue,
-            &Frame {
-                view,
-                casters: &casters,
-                lights: &lights,
-                receivers: &[],
-                steps: Technique::Auto.into(),
-                counting: Counting::Verdict,
-            },
-        )?;
+        let lights: Vec<_> = scene.lights.iter().map(|l| ShadowLight::new(l.kind)).collect();
+        let prepared = self.shadows.prepare(&Frame::new(view, &casters, &lights))?;
 
-        let vertices =
-            scene.meshes.iter().map(|m| self.buffer(bytemuck::cast_slice(&m.positions), BufferUsages::VERTEX));
-        let vertices: Vec<_> = vertices.collect();
-        let indices = scene.meshes.iter().map(|m| self.buffer(bytemuck::cast_slice(&m.triangles), BufferUsages::INDEX));
-        let indices: Vec<_> = indices.collect();
-        let color = self.texture(view.size, COLOR, SAMPLES, wgpu::TextureUsages::empty());
-        let depth = self.texture(view.size, self.depth_stencil, SAMPLES, wgpu::TextureUsages::empty());
-        let image = self.texture(view.size, COLOR, 1, wgpu::TextureUsages::COPY_SRC);
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-
+        let Targets { color, depth, image } = &self.targets;
+        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         // One pass for ambient light and depth, then one per light: volumes into the stencil, lit surfaces on top.
         for pass_index in 0..=scene.lights.len() {
             let light = pass_index.checked_sub(1);
-            let bindings = self.bindings(scene, view, light.map(|l| &scene.lights[l]));
-            let mut pass =
-                begin(&mut encoder, &color, &depth, &image, light.is_none(), pass_index == scene.lights.len());
+            let bindings = bindings(&self.device, &self.layout, scene, view, light.map(|l| &scene.lights[l]));
+            let mut pass = begin(&mut encoder, color, depth, image, light.is_none(), pass_index == scene.lights.len());
             match light {
                 None => pass.set_pipeline(&self.ambient),
                 Some(l) => {
-                    // Shadows, part two.
+                    // Shadows, part three.
                     if with_shadows {
-                        shadows.draw(&mut pass, &volumes, l);
+                        prepared.draw(&mut pass, &self.volumes, l);
                     }
                     pass.set_pipeline(&self.lit);
                     pass.set_stencil_reference(0);
                 }
             }
             for (object, bindings) in scene.objects.iter().zip(&bindings) {
+                let mesh = &self.meshes[object.mesh];
                 pass.set_bind_group(0, bindings, &[]);
-                pass.set_vertex_buffer(0, vertices[object.mesh].slice(..));
-                pass.set_index_buffer(indices[object.mesh].slice(..), wgpu::IndexFormat::Uint32);
-                pass.draw_indexed(0..scene.meshes[object.mesh].triangles.len() as u32 * 3, 0, 0..1);
+                pass.set_vertex_buffer(0, mesh.vertices.slice(..));
+                pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
+                pass.draw_indexed(0..mesh.count, 0, 0..1);
             }
         }
-        self.read_back(encoder, &image)
+        self.read_back(encoder)
     }
 
-    fn buffer(&self, contents: &[u8], usage: BufferUsages) -> wgpu::Buffer {
-        self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
-    }
-
-    fn bindings(&self, scene: &Scene, view: &View, light: Option<&Light>) -> Vec<wgpu::BindGroup> {
-        let uniform = light.map_or(LightUniform { position: [0.0; 4], color: [0.0; 4] }, light_uniform);
-        let light = self.buffer(bytemuck::bytes_of(&uniform), BufferUsages::UNIFORM);
-        let bind = |object: &crate::scene::Object| {
-            let [r, g, b] = object.color;
-            let world_from_object = DMat4::from(object.world_from_object).as_mat4();
-            let uniform = ObjectUniform {
-                clip_from_object: view.clip_from_object(&object.world_from_object).to_cols_array(),
-                world_from_object: world_from_object.to_cols_array(),
-                color: [r, g, b, 1.0],
-            };
-            let object = self.buffer(bytemuck::bytes_of(&uniform), BufferUsages::UNIFORM);
-            self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: None,
-                layout: &self.layout,
-                entries: &[
-                    wgpu::BindGroupEntry { binding: 0, resource: object.as_entire_binding() },
-                    wgpu::BindGroupEntry { binding: 1, resource: light.as_entire_binding() },
-                ],
-            })
-        };
-        scene.objects.iter().map(bind).collect()
-    }
-
-    fn texture(
-        &self,
-        [width, height]: [u32; 2],
-        format: wgpu::TextureFormat,
-        sample_count: u32,
-        more: wgpu::TextureUsages,
-    ) -> wgpu::Texture {
-        self.device.create_texture(&wgpu::TextureDescriptor {
-            label: None,
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | more,
-            view_formats: &[],
-        })
-    }
-
-    fn read_back(&self, mut encoder: wgpu::CommandEncoder, image: &wgpu::Texture) -> Result<Vec<u8>, Error> {
+    fn read_back(&self, mut encoder: wgpu::CommandEncoder) -> Result<Vec<u8>, Error> {
+        let image = &self.targets.image;
         let (width, height) = (image.width(), image.height());
         let row = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
@@ -209,6 +170,59 @@ impl Host {
         let mapped = buffer.slice(..).get_mapped_range()?;
         Ok(mapped.chunks(row as usize).flat_map(|r| &r[..width as usize * 4]).copied().collect())
     }
+}
+
+fn buffer(device: &wgpu::Device, contents: &[u8], usage: BufferUsages) -> wgpu::Buffer {
+    device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
+}
+
+fn bindings(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    scene: &Scene,
+    view: &View,
+    light: Option<&Light>,
+) -> Vec<wgpu::BindGroup> {
+    let uniform = light.map_or(LightUniform { position: [0.0; 4], color: [0.0; 4] }, light_uniform);
+    let light = buffer(device, bytemuck::bytes_of(&uniform), BufferUsages::UNIFORM);
+    let bind = |object: &scene::Object| {
+        let [r, g, b] = object.color;
+        let world_from_object = DMat4::from(object.world_from_object).as_mat4();
+        let uniform = ObjectUniform {
+            clip_from_object: view.clip_from_object(&object.world_from_object).to_cols_array(),
+            world_from_object: world_from_object.to_cols_array(),
+            color: [r, g, b, 1.0],
+        };
+        let object = buffer(device, bytemuck::bytes_of(&uniform), BufferUsages::UNIFORM);
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: object.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: light.as_entire_binding() },
+            ],
+        })
+    };
+    scene.objects.iter().map(bind).collect()
+}
+
+fn texture(
+    device: &wgpu::Device,
+    [width, height]: [u32; 2],
+    format: wgpu::TextureFormat,
+    sample_count: u32,
+    more: wgpu::TextureUsages,
+) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | more,
+        view_formats: &[],
+    })
 }
 
 /// Begins the ambient pass (which clears) or a light's pass (which adds, on a cleared stencil).
