@@ -15,9 +15,9 @@
 //! greatest.
 
 use crate::light::LightKind;
+use crate::parallel;
 use crate::topology::{NONE, Shape, Topology};
 use glam::{DMat3, DVec3, DVec4, Vec4};
-use rayon::prelude::*;
 
 /// A light in a caster's object space, rounded to the f32 with which the GPU extrudes: `(position, 1)` or
 /// `(direction towards the light, 0)`.
@@ -103,11 +103,7 @@ pub fn weights(topology: &Topology, castings: &[Casting], light: ObjectLight, ou
             }
         }
     };
-    if out.len() <= TASK {
-        fill(0, out);
-    } else {
-        out.par_chunks_mut(TASK).enumerate().for_each(|(i, chunk)| fill(i * TASK, chunk));
-    }
+    parallel::for_each_piece(out, TASK, fill);
 }
 
 /// Which side of a counter-clockwise triangle faces the homogeneous `light`: +1 front, -1 back, 0 edge-on within

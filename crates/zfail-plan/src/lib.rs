@@ -14,6 +14,7 @@ pub mod casting;
 pub mod closure;
 pub mod convex;
 pub mod light;
+mod parallel;
 pub mod plan;
 pub mod scissor;
 pub mod stack;

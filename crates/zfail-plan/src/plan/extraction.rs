@@ -11,9 +11,9 @@ use super::pair::{Pair, Role};
 use super::placed::Placed;
 use super::{Counting, Input, Silhouettes, Steps};
 use crate::casting::{self, Casting, ObjectLight};
+use crate::parallel;
 use crate::topology::Topology;
 use crate::view::Projection;
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// What the device is to make of one caster: the parts of [`crate::volume`], from a facing of its own.
@@ -198,7 +198,7 @@ pub(super) fn choose(frame: &Input<'_>, steps: Steps, extractable: &[bool], pair
         return Some(layers);
     }
     let unproved = |pair: &Pair| pair.on_device && pair.extracted.proved(pair.mesh(), pair.light).is_none();
-    let prove = |(c, pair): (usize, &mut Pair)| {
+    let prove = |c: usize, pair: &mut Pair| {
         if unproved(pair) {
             let topology = frame.casters[c].topology;
             let least = if steps.silhouettes == Silhouettes::Gpu { 0.0 } else { WORTH * pair.step };
@@ -207,8 +207,8 @@ pub(super) fn choose(frame: &Input<'_>, steps: Steps, extractable: &[bool], pair
     };
     match pairs.iter().filter(|pair| unproved(pair)).count() {
         0 => {}
-        1 => pairs.iter_mut().enumerate().for_each(prove),
-        _ => pairs.par_iter_mut().enumerate().for_each(prove),
+        1 => pairs.iter_mut().enumerate().for_each(|(c, pair)| prove(c, pair)),
+        _ => parallel::for_each(pairs, prove),
     }
     let mut sum = 0;
     for pair in pairs.iter_mut().filter(|pair| pair.on_device) {

@@ -8,9 +8,9 @@
 use super::pyramid::Pyramid;
 use crate::bounds::Bounds;
 use crate::casting::ObjectLight;
+use crate::parallel;
 use crate::topology::{Cover, Topology};
 use glam::{DVec3, DVec4};
-use rayon::prelude::*;
 
 /// Items that one task looks at; fewer are not worth a task.
 const TASK: usize = 8192;
@@ -35,12 +35,7 @@ pub(super) fn near_count(
 ) -> Option<NearCount> {
     let clear =
         |side: &[u32]| pyramid.excludes_segment(topology.position(side[0] >> 1), topology.position(side[1] >> 1));
-    let all_clear = if sides.len() <= TASK * stride {
-        sides.chunks_exact(stride).all(clear)
-    } else {
-        sides.par_chunks_exact(stride).with_min_len(TASK).all(clear)
-    };
-    if !all_clear {
+    if !parallel::all_pieces(sides, TASK * stride, |_, sides| sides.chunks_exact(stride).all(clear)) {
         return None;
     }
     let casting = |t: usize, c: i8| c != 0 && pyramid.slab_meets(topology.corners(t));
@@ -65,8 +60,7 @@ fn within_solid(topology: &Topology, pyramid: &Pyramid, middle: DVec3) -> bool {
 }
 
 fn any(weights: &[i8], test: impl Fn(usize, i8) -> bool + Sync) -> bool {
-    let chunk = |(i, chunk): (usize, &[i8])| chunk.iter().enumerate().any(|(k, &c)| test(i * TASK + k, c));
-    if weights.len() <= TASK { chunk((0, weights)) } else { weights.par_chunks(TASK).enumerate().any(chunk) }
+    !parallel::all_pieces(weights, TASK, |first, piece| piece.iter().enumerate().all(|(k, &c)| !test(first + k, c)))
 }
 
 /// How many layers of the weights lie on the segment from the light to homogeneous point `to` (object space).
@@ -97,7 +91,7 @@ pub(super) fn layers(topology: &Topology, weights: &[i8], light: ObjectLight, to
         let height = |h: DVec4| normal.dot(h.truncate() - p * h.w);
         if (height(light) > 0.0) == (height(to) > 0.0) { 0 } else { u32::from(c.unsigned_abs()) }
     };
-    let chunk =
-        |(i, chunk): (usize, &[i8])| chunk.iter().enumerate().map(|(k, &c)| crossed(i * TASK + k, c)).sum::<u32>();
-    if weights.len() <= TASK { chunk((0, weights)) } else { weights.par_chunks(TASK).enumerate().map(chunk).sum() }
+    parallel::sum_pieces(weights, TASK, |first, piece| {
+        piece.iter().enumerate().map(|(k, &c)| crossed(first + k, c)).sum()
+    })
 }

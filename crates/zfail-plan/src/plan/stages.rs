@@ -14,10 +14,10 @@ use super::reach::Reach;
 use super::receivers::Receivers;
 use super::store::Store;
 use super::{Counting, Culled, Draw, FramePlan, Input, LightPlan, LightStats, PlanError, Steps, ZPass, caps};
+use crate::parallel;
 use crate::scissor::{self, Rectangle};
 use crate::volume::Volume;
 use glam::DVec4;
-use rayon::prelude::*;
 
 /// Plans frame after frame, keeping memory and what has not changed.
 #[derive(Debug, Default)]
@@ -184,15 +184,15 @@ impl Planner {
     ) {
         let casters = frame.casters.len();
         let waiting = self.pairs.iter().enumerate().filter(|(i, pair)| wanted(pair, i % casters)).count();
-        let each = |(i, pair): (usize, &mut Pair)| {
+        let each = |i: usize, pair: &mut Pair| {
             if wanted(pair, i % casters) {
                 work(pair, i % casters);
             }
         };
         if waiting > 1 {
-            self.pairs.par_iter_mut().enumerate().for_each(each);
+            parallel::for_each(&mut self.pairs, each);
         } else if waiting == 1 {
-            self.pairs.iter_mut().enumerate().for_each(each);
+            self.pairs.iter_mut().enumerate().for_each(|(i, pair)| each(i, pair));
         }
     }
 

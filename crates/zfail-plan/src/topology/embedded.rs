@@ -7,6 +7,7 @@
 //! Predicates", by the crate `robust`).
 
 use super::Topology;
+use crate::parallel;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 use std::sync::atomic::{AtomicI64, Ordering};
 
@@ -89,7 +90,7 @@ impl Node {
                 (a.min[axis] + a.max[axis]).total_cmp(&(b.min[axis] + b.max[axis]))
             });
             let (left, right) = items.split_at_mut(middle);
-            let (left, right) = rayon::join(|| Self::range(left, start), || Self::range(right, start + middle));
+            let (left, right) = parallel::join(|| Self::range(left, start), || Self::range(right, start + middle));
             Box::new([left, right])
         });
         Self { min, max, start, end, children }
@@ -100,7 +101,7 @@ impl Node {
         match &self.children {
             Some(children) => {
                 let [left, right] = &**children;
-                let (l, r) = rayon::join(|| left.is_free_of_contact(pairs), || right.is_free_of_contact(pairs));
+                let (l, r) = parallel::join(|| left.is_free_of_contact(pairs), || right.is_free_of_contact(pairs));
                 l && r && left.is_apart_from(right, pairs)
             }
             None => (self.start..self.end).all(|i| (i + 1..self.end).all(|j| !meet(&items[i], &items[j]))),

@@ -22,7 +22,7 @@ pub use parts::{Cover, Part, Shape};
 pub use twins::same_winding;
 
 use crate::bounds::Bounds;
-use rayon::prelude::*;
+use crate::parallel;
 
 /// Marks an edge record's missing second triangle.
 pub const NONE: u32 = u32::MAX;
@@ -237,7 +237,7 @@ impl Topology {
                 }
             }
         }
-        uses.par_sort_unstable();
+        parallel::sort_unstable(&mut uses);
 
         let mut topology = Self {
             part_of: vec![NONE; triangles.len()],

@@ -5,7 +5,7 @@
 
 use super::{Blocking, NONE, Topology, closed, embedded};
 use crate::bounds::Bounds;
-use rayon::prelude::*;
+use crate::parallel;
 use std::ops::Range;
 
 /// Triangles connected through edges.
@@ -95,28 +95,24 @@ pub(super) fn find(topology: &mut Topology) {
         .collect();
     topology.by_part = members.concat();
     let topology_ref = &*topology;
-    let parts = ranges
-        .into_par_iter()
-        .zip(balanced)
-        .map(|(range, balanced)| {
-            let triangles = &topology_ref.by_part[range.start as usize..range.end as usize];
-            let shape = if !balanced {
-                Shape::Open
-            } else if topology_ref.bends() {
-                Shape::Bending
-            } else if embedded::is_embedded(topology_ref, triangles) {
-                match closed::signed_volume(topology_ref, triangles) {
-                    v if v > 0.0 => Shape::Solid { inside: 1 },
-                    v if v < 0.0 => Shape::Solid { inside: -1 },
-                    _ => Shape::SelfIntersecting,
-                }
-            } else {
-                Shape::SelfIntersecting
-            };
-            let corners = triangles.iter().flat_map(|&t| topology_ref.corners(t as usize));
-            Part { triangles: range, shape, bounds: Bounds::of(corners), cover: Cover::Nowhere }
-        })
-        .collect();
+    let parts = parallel::map(ranges.into_iter().zip(balanced).collect(), |(range, balanced): (Range<u32>, bool)| {
+        let triangles = &topology_ref.by_part[range.start as usize..range.end as usize];
+        let shape = if !balanced {
+            Shape::Open
+        } else if topology_ref.bends() {
+            Shape::Bending
+        } else if embedded::is_embedded(topology_ref, triangles) {
+            match closed::signed_volume(topology_ref, triangles) {
+                v if v > 0.0 => Shape::Solid { inside: 1 },
+                v if v < 0.0 => Shape::Solid { inside: -1 },
+                _ => Shape::SelfIntersecting,
+            }
+        } else {
+            Shape::SelfIntersecting
+        };
+        let corners = triangles.iter().flat_map(|&t| topology_ref.corners(t as usize));
+        Part { triangles: range, shape, bounds: Bounds::of(corners), cover: Cover::Nowhere }
+    });
     topology.parts = parts;
     debug_assert!(topology.part_of.iter().all(|&p| p == NONE || (p as usize) < topology.parts.len()));
 }

@@ -5,7 +5,7 @@
 //! caps of twins are drawn in the order of the one that is visible.
 
 use super::{NONE, Topology};
-use rayon::prelude::*;
+use crate::parallel;
 
 /// All groups of two or more.
 pub(super) fn find(topology: &Topology) -> Vec<Vec<u32>> {
@@ -17,7 +17,7 @@ pub(super) fn find(topology: &Topology) -> Vec<Vec<u32>> {
             (key, t as u32)
         })
         .collect();
-    keyed.par_sort_unstable();
+    parallel::sort_unstable(&mut keyed);
     let groups = keyed.chunk_by(|a, b| a.0 == b.0).filter(|group| group.len() > 1);
     groups.map(|group| group.iter().map(|&(_, t)| t).collect()).collect()
 }
