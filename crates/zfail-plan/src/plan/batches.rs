@@ -2,11 +2,12 @@
 //!
 //! In: weights of every pair of one light. Out: a batch number per triangle, or none where one batch will do.
 
+use super::Counting;
 use super::meridians::{self, Crossings, Lines};
 use super::pair::{Pair, Role};
 use super::placed::Placed;
 use super::spread::spread;
-use super::{Counting, Input};
+use super::stage::Stage;
 use crate::bounds::Bounds;
 use crate::light::LightKind;
 use crate::stack::{self, Outline, Work};
@@ -33,34 +34,28 @@ pub(super) struct Batching {
 impl Batching {
     /// Whether one batch will do for the planner's pairs of light `l` beside others on the device, which have at most so
     /// many `layers`. Builds their sides.
-    pub fn has_room_for(
-        &mut self,
-        layers: usize,
-        frame: &Input<'_>,
-        l: usize,
-        pairs: &mut [Pair],
-        placed: &[Placed],
-    ) -> bool {
+    pub fn has_room_for(&mut self, layers: usize, stage: &Stage<'_>, l: usize, pairs: &mut [Pair]) -> bool {
         pairs.iter_mut().for_each(Pair::unite);
         self.light = None;
-        let casting: usize = pairs.iter().filter(|p| p.is_planned()).map(|p| p.casting).sum();
-        let kind = &frame.lights[l].kind;
-        frame.counting == Counting::Raw
+        let casting: usize = pairs.iter().filter(|p| p.is_planned()).map(|p| p.casting()).sum();
+        let kind = &stage.light(l).kind;
+        stage.input.counting == Counting::Raw
             || casting + layers <= SINGLE
-            || layers < SINGLE && quickly_within(frame, kind, pairs, placed, &mut self.crossings, SINGLE - layers)
+            || layers < SINGLE && quickly_within(stage, kind, pairs, &mut self.crossings, SINGLE - layers)
     }
 
     /// Sets the batches of `pairs`, all of light `l`, one per caster. Builds their sides. Returns what it looked at.
-    pub fn divide(&mut self, frame: &Input<'_>, l: usize, pairs: &mut [Pair], placed: &[Placed]) -> u64 {
+    pub fn divide(&mut self, stage: &Stage<'_>, l: usize, pairs: &mut [Pair]) -> u64 {
+        let placed = stage.placed;
         let active = |pair: &Pair| pair.role != Role::Idle;
-        let casting: usize = pairs.iter().filter(|p| active(p)).map(|p| p.casting).sum();
-        if frame.counting == Counting::Raw || casting <= SINGLE {
+        let casting: usize = pairs.iter().filter(|p| active(p)).map(|p| p.casting()).sum();
+        if stage.input.counting == Counting::Raw || casting <= SINGLE {
             pairs.iter_mut().for_each(Pair::unite);
             self.light = None;
             return 0;
         }
-        let kind = frame.lights[l].kind;
-        let orthographic = matches!(frame.view.projection, Projection::Orthographic { .. });
+        let kind = stage.light(l).kind;
+        let orthographic = matches!(stage.view().projection, Projection::Orthographic { .. });
         let key = || {
             let active = pairs.iter().zip(placed).enumerate().filter(|(_, (pair, _))| active(pair));
             active.map(|(c, (_, placed))| (c as u32, placed.mesh, placed.world_from_object))
@@ -80,17 +75,17 @@ impl Batching {
         self.orthographic = orthographic;
 
         let mut work = Work::of(WORK);
-        let quick = quickly_within(frame, &kind, pairs, placed, &mut self.crossings, SINGLE)
-            || bodies_within(frame, &kind, pairs, placed, &mut self.crossings, &mut work);
+        let quick = quickly_within(stage, &kind, pairs, &mut self.crossings, SINGLE)
+            || bodies_within(stage, &kind, pairs, &mut self.crossings, &mut work);
         self.divided = !quick && {
             let shape = directions(kind.homogeneous(), pairs, placed);
             let mut outline = Outline::new(shape.clone());
             for (c, (pair, caster)) in pairs.iter().zip(placed).enumerate().filter(|(_, (pair, _))| active(pair)) {
-                pair.outline(frame.casters[c].topology, caster, &mut outline);
+                pair.outline(stage.topology(c), caster, &mut outline);
             }
             let within = outline.is_within(SINGLE, &mut work);
             if !within {
-                spread(frame, &kind, pairs, placed, &shape, &mut work);
+                spread(stage, &kind, pairs, &shape, &mut work);
             }
             !within
         };
@@ -102,24 +97,17 @@ impl Batching {
 }
 
 /// Whether silhouettes alone prove that no ray crosses more than `most` layers.
-fn quickly_within(
-    frame: &Input<'_>,
-    kind: &LightKind,
-    pairs: &mut [Pair],
-    placed: &[Placed],
-    sum: &mut Crossings,
-    most: usize,
-) -> bool {
+fn quickly_within(stage: &Stage<'_>, kind: &LightKind, pairs: &mut [Pair], sum: &mut Crossings, most: usize) -> bool {
     let mut bounds = Bounds::EMPTY;
-    for caster in placed.iter().filter(|p| !p.world.is_empty()) {
+    for caster in stage.placed.iter().filter(|p| !p.world.is_empty()) {
         bounds.add(caster.world.min);
         bounds.add(caster.world.max);
     }
     let lines = Lines::new(kind.homogeneous(), &bounds);
     sum.clear(meridians::COARSE);
     let planned = |(_, (pair, _)): &(usize, (&mut Pair, &Placed))| pair.is_planned();
-    for (c, (pair, caster)) in pairs.iter_mut().zip(placed).enumerate().filter(planned) {
-        let topology = frame.casters[c].topology;
+    for (c, (pair, caster)) in pairs.iter_mut().zip(stage.placed).enumerate().filter(planned) {
+        let topology = stage.topology(c);
         // Batches would put sides between triangles that have none.
         pair.unite();
         pair.build_sides(topology);
@@ -129,8 +117,8 @@ fn quickly_within(
         return true;
     }
     sum.clear(meridians::FINE);
-    for (c, (pair, caster)) in pairs.iter().zip(placed).enumerate().filter(|(_, (pair, _))| pair.is_planned()) {
-        pair.count_crossings(frame.casters[c].topology, &caster.world_from_object, lines, sum);
+    for (c, (pair, caster)) in pairs.iter().zip(stage.placed).enumerate().filter(|(_, (pair, _))| pair.is_planned()) {
+        pair.count_crossings(stage.topology(c), &caster.world_from_object, lines, sum);
     }
     sum.bound() <= most
 }
@@ -138,24 +126,23 @@ fn quickly_within(
 /// Whether the layers of every caster by itself, and where casters hide one another from the light, prove it: for many
 /// casters that are small as the light sees them, of which lines right across the scene meet too many.
 fn bodies_within(
-    frame: &Input<'_>,
+    stage: &Stage<'_>,
     kind: &LightKind,
     pairs: &[Pair],
-    placed: &[Placed],
     scratch: &mut Crossings,
     work: &mut Work,
 ) -> bool {
-    let (light, eye) = (kind.homogeneous(), frame.view.eye());
-    let active = || pairs.iter().zip(placed).enumerate().filter(|(_, (pair, _))| pair.role != Role::Idle);
+    let (light, eye) = (kind.homogeneous(), stage.view().eye());
+    let active = || pairs.iter().zip(stage.placed).enumerate().filter(|(_, (pair, _))| pair.role != Role::Idle);
     if active().nth(1).is_none() {
         return false;
     }
-    let shape = directions(light, pairs, placed);
+    let shape = directions(light, pairs, stage.placed);
     let body = |(c, (pair, caster)): (usize, (&Pair, &Placed))| {
         scratch.clear(meridians::COARSE);
         let lines = Lines::of(light, eye, caster);
-        pair.count_crossings(frame.casters[c].topology, &caster.world_from_object, lines, scratch);
-        let layers = scratch.bound().min(pair.casting);
+        pair.count_crossings(stage.topology(c), &caster.world_from_object, lines, scratch);
+        let layers = scratch.bound().min(pair.casting());
         stack::Body::new(caster.corners.map(|corner| corner + eye), layers, light, &shape)
     };
     let bodies: Vec<stack::Body> = active().map(body).collect();

@@ -9,7 +9,8 @@ use super::batches::SINGLE;
 use super::off_screen::Parts;
 use super::pair::{Pair, Role};
 use super::placed::Placed;
-use super::{Counting, Input, Silhouettes, Steps};
+use super::stage::Stage;
+use super::{Counting, Silhouettes, Steps};
 use crate::casting::{self, Casting, ObjectLight};
 use crate::parallel;
 use crate::topology::Topology;
@@ -173,26 +174,26 @@ impl Pair {
 }
 
 /// Chooses which pairs of a light go to the device. Returns how many layers they have at most, if there are any.
-pub(super) fn choose(frame: &Input<'_>, steps: Steps, extractable: &[bool], pairs: &mut [Pair]) -> Option<usize> {
-    let perspective = matches!(frame.view.projection, Projection::Perspective { .. });
+pub(super) fn choose(stage: &Stage<'_>, extractable: &[bool], pairs: &mut [Pair]) -> Option<usize> {
+    let perspective = matches!(stage.view().projection, Projection::Perspective { .. });
     let mut candidates = 0;
     for (c, pair) in pairs.iter_mut().enumerate() {
         let can = perspective && pair.role != Role::Idle && extractable.get(c).is_some_and(|&can| can);
         // Which of coincident triangles is visible would have to be known.
-        let can = can && frame.casters[c].topology.twins.is_empty();
-        pair.on_device = can && pair.is_candidate(steps.silhouettes);
+        let can = can && stage.topology(c).twins.is_empty();
+        pair.on_device = can && pair.is_candidate(stage.steps.silhouettes);
         candidates += usize::from(pair.on_device);
     }
     if candidates == 0 {
         return None;
     }
-    let triangles = |c: usize| frame.casters[c].topology.by_part.len();
+    let triangles = |c: usize| stage.topology(c).by_part.len();
     let active = pairs.iter().enumerate().filter(|(_, pair)| pair.role != Role::Idle);
     let most: usize = active.map(|(c, _)| triangles(c)).sum();
-    if frame.counting == Counting::Raw || most <= SINGLE {
+    if stage.input.counting == Counting::Raw || most <= SINGLE {
         let mut layers = 0;
         for (c, pair) in pairs.iter_mut().enumerate().filter(|(_, pair)| pair.on_device) {
-            pair.extracted.cast(frame.casters[c].topology, pair.mesh(), pair.light);
+            pair.extracted.cast(stage.topology(c), pair.mesh(), pair.light);
             layers += triangles(c);
         }
         return Some(layers);
@@ -200,8 +201,8 @@ pub(super) fn choose(frame: &Input<'_>, steps: Steps, extractable: &[bool], pair
     let unproved = |pair: &Pair| pair.on_device && pair.extracted.proved(pair.mesh(), pair.light).is_none();
     let prove = |c: usize, pair: &mut Pair| {
         if unproved(pair) {
-            let topology = frame.casters[c].topology;
-            let least = if steps.silhouettes == Silhouettes::Gpu { 0.0 } else { WORTH * pair.step };
+            let topology = stage.topology(c);
+            let least = if stage.steps.silhouettes == Silhouettes::Gpu { 0.0 } else { WORTH * pair.step };
             pair.extracted.prove(topology, pair.mesh(), pair.light, LAYERS / candidates, least);
         }
     };

@@ -10,22 +10,28 @@
 mod ball;
 mod batches;
 mod caps;
+mod choice;
+mod draws;
 mod extraction;
+mod kept;
 mod meridians;
 mod near_count;
 mod occluders;
 mod off_screen;
 mod pair;
+mod pieces;
 mod placed;
 mod pyramid;
 mod reach;
 mod receivers;
 mod sheets;
 mod spread;
+mod stage;
 mod stages;
 mod stats;
 mod store;
 mod technique;
+mod z_pass;
 
 pub use extraction::{DarkCap, Extraction, LightCap};
 pub use stats::{Culled, LightStats, Triangles};

@@ -6,19 +6,23 @@
 //! Occluders are visited in the order of their distance from the light, and only kept ones hide others, so that casters
 //! that coincide cannot hide each other.
 
+use super::pair::{Pair, Role};
+use super::placed::Placed;
+use super::stage::Stage;
+use super::{Culled, LightStats};
 use crate::topology::{ConvexPart, Topology};
 use glam::{DAffine3, DVec3, DVec4};
 
 /// A convex caster's shadow as half spaces, `dot(xyz, p) + w >= 0`, relative to the eye.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Shadow {
+struct Shadow {
     planes: Vec<DVec4>,
     faces: Vec<DVec4>,
 }
 
 impl Shadow {
     /// The shadow that `part` of a caster throws; empty where the light is inside of it.
-    pub fn set(&mut self, topology: &Topology, part: &ConvexPart, relative_from_object: &DAffine3, light: DVec4) {
+    fn set(&mut self, topology: &Topology, part: &ConvexPart, relative_from_object: &DAffine3, light: DVec4) {
         self.planes.clear();
         self.faces.clear();
         let at = |v: u32| relative_from_object.transform_point3(topology.position(v));
@@ -49,7 +53,7 @@ impl Shadow {
     }
 
     /// Whether all of `corners` (relative to the eye) lie in the shadow, up to rounding.
-    pub fn holds(&self, corners: &[DVec3; 8]) -> bool {
+    fn holds(&self, corners: &[DVec3; 8]) -> bool {
         /// Corners this much out of the shadow, relative to their distance from the eye, are in it for all that the f32
         /// arithmetic of a GPU can tell: flush surfaces must not fail for the rounding of their coordinates.
         const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
@@ -57,6 +61,74 @@ impl Shadow {
         let tolerance = -ROUNDING * reach;
         !self.planes.is_empty()
             && self.planes.iter().all(|plane| corners.iter().all(|c| plane.truncate().dot(*c) + plane.w >= tolerance))
+    }
+}
+
+/// Memory for looking for casters that stand in shadow.
+#[derive(Debug, Default)]
+pub(super) struct Occlusion {
+    /// Distance from the light, and caster.
+    occluders: Vec<(f64, usize)>,
+    shadows: Vec<Shadow>,
+}
+
+impl Occlusion {
+    /// Idles the casters of a light (homogeneous, relative to the eye) that stand in the shadow of convex ones.
+    pub fn leave_out(&mut self, stage: &Stage<'_>, light: DVec4, pairs: &mut [Pair], stats: &mut LightStats) {
+        let most = usize::from(stage.steps.occluders);
+        if most == 0 || pairs.iter().filter(|pair| pair.role != Role::Idle).count() < 2 {
+            return;
+        }
+        self.list(stage, light, pairs, most);
+        let mut kept = 0;
+        for &(_, c) in &self.occluders {
+            let caster = &stage.placed[c];
+            if self.shadows[..kept].iter().any(|shadow| shadow.holds(&caster.exact_corners)) {
+                pairs[c].role = Role::Idle;
+                stats.cull(Culled::Occluded);
+                continue;
+            }
+            if kept == self.shadows.len() {
+                self.shadows.push(Shadow::default());
+            }
+            let topology = stage.topology(c);
+            if let Some(part) = &topology.convex {
+                self.shadows[kept].set(topology, part, &caster.relative_from_object, light);
+                kept += 1;
+            }
+        }
+        for (c, (pair, caster)) in pairs.iter_mut().zip(stage.placed).enumerate() {
+            let itself = self.occluders.iter().any(|entry| entry.1 == c);
+            let occluded = |shadow: &Shadow| shadow.holds(&caster.exact_corners);
+            if pair.role != Role::Idle && !itself && self.shadows[..kept].iter().any(occluded) {
+                pair.role = Role::Idle;
+                stats.cull(Culled::Occluded);
+            }
+        }
+    }
+
+    /// Lists the convex casters that look largest from the light, nearest first.
+    fn list(&mut self, stage: &Stage<'_>, light: DVec4, pairs: &[Pair], most: usize) {
+        let distance = |caster: &Placed| {
+            let way = |p: DVec3| if light.w == 0.0 { -light.truncate().dot(p) } else { light.truncate().distance(p) };
+            caster.corners.iter().map(|c| way(*c)).fold(f64::INFINITY, f64::min)
+        };
+        self.occluders.clear();
+        let active = pairs.iter().zip(stage.placed).enumerate().filter(|(_, (pair, _))| pair.role != Role::Idle);
+        for (c, (_, caster)) in active {
+            if stage.topology(c).convex.is_some() {
+                let size = caster.axes.iter().map(|axis| axis.length_squared()).sum::<f64>();
+                let away = if light.w == 0.0 { 1.0 } else { light.truncate().distance_squared(caster.center) };
+                self.occluders.push((-size / away.max(f64::MIN_POSITIVE), c));
+            }
+        }
+        let by_first = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        self.occluders.sort_unstable_by(by_first);
+        self.occluders.truncate(most);
+        for entry in &mut self.occluders {
+            entry.0 = distance(&stage.placed[entry.1]);
+        }
+        self.occluders.sort_unstable_by(by_first);
     }
 }
 

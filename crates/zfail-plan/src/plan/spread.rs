@@ -3,10 +3,9 @@
 //! In: weights of every pair of one light. Out: a batch number per triangle, so that no ray crosses more layers of a batch
 //! than seven bits can count.
 
-use super::Input;
 use super::pair::{Pair, Role};
-use super::placed::Placed;
 use super::sheets::sheets;
+use super::stage::Stage;
 use crate::light::LightKind;
 use crate::stack::{self, Caster, Outline, Work};
 use crate::topology::Topology;
@@ -28,19 +27,12 @@ struct Item {
 }
 
 /// Distributes casting triangles over batches.
-pub(super) fn spread(
-    frame: &Input<'_>,
-    kind: &LightKind,
-    pairs: &mut [Pair],
-    placed: &[Placed],
-    shape: &stack::Chart,
-    work: &mut Work,
-) {
-    let items = items(frame, kind, pairs, placed);
+pub(super) fn spread(stage: &Stage<'_>, kind: &LightKind, pairs: &mut [Pair], shape: &stack::Chart, work: &mut Work) {
+    let items = items(stage, kind, pairs);
     let mut batches = Vec::new();
-    halve(&items, |run, work| is_within(frame, pairs, placed, shape, run, work), work, &mut batches);
+    halve(&items, |run, work| is_within(stage, pairs, shape, run, work), work, &mut batches);
     for pair in pairs.iter_mut().filter(|pair| pair.role != Role::Idle) {
-        let triangles = pair.weights.len();
+        let triangles = pair.weights().len();
         pair.divide(|batch_of| {
             batch_of.clear();
             batch_of.resize(triangles, 0);
@@ -55,15 +47,17 @@ pub(super) fn spread(
 }
 
 /// All casting triangles of one light, nearest caster first, nearest sheet first.
-fn items(frame: &Input<'_>, kind: &LightKind, pairs: &[Pair], placed: &[Placed]) -> Vec<Item> {
+fn items(stage: &Stage<'_>, kind: &LightKind, pairs: &[Pair]) -> Vec<Item> {
     let light = kind.homogeneous();
     let mut items = Vec::new();
     let mut nearest = vec![f64::INFINITY; pairs.len()];
-    for (p, (pair, caster)) in pairs.iter().zip(placed).enumerate().filter(|(_, (pair, _))| pair.role != Role::Idle) {
-        let sheets = sheets(frame.casters[p].topology, &pair.weights);
+    for (p, (pair, caster)) in
+        pairs.iter().zip(stage.placed).enumerate().filter(|(_, (pair, _))| pair.role != Role::Idle)
+    {
+        let sheets = sheets(stage.topology(p), pair.weights());
         let first = items.len();
-        for triangle in (0..pair.weights.len()).filter(|&t| pair.weights[t] != 0) {
-            let corners = frame.casters[p].topology.corners(triangle);
+        for triangle in (0..pair.weights().len()).filter(|&t| pair.weights()[t] != 0) {
+            let corners = stage.topology(p).corners(triangle);
             let center = caster.world_from_object.transform_point3((corners[0] + corners[1] + corners[2]) / 3.0);
             let distance =
                 if light.w == 0.0 { -light.truncate().dot(center) } else { light.truncate().distance(center) };
@@ -116,29 +110,22 @@ fn border(range: &Range<usize>, middle: usize, is_border: impl Fn(usize) -> bool
 }
 
 /// Whether no ray crosses more than [`FOLDED`] layers of a run.
-fn is_within(
-    frame: &Input<'_>,
-    pairs: &[Pair],
-    placed: &[Placed],
-    shape: &stack::Chart,
-    run: &[Item],
-    work: &mut Work,
-) -> bool {
+fn is_within(stage: &Stage<'_>, pairs: &[Pair], shape: &stack::Chart, run: &[Item], work: &mut Work) -> bool {
     let mut outline = Outline::new(shape.clone());
     let mut edges = Vec::new();
     for run in run.chunk_by(|a, b| a.pair == b.pair) {
         let p = run[0].pair as usize;
-        let (pair, topology) = (&pairs[p], frame.casters[p].topology);
-        if run.len() == pair.casting && pair.is_united() {
-            pair.outline(topology, &placed[p], &mut outline);
+        let (pair, topology) = (&pairs[p], stage.topology(p));
+        if run.len() == pair.casting() && pair.is_united() {
+            pair.outline(topology, &stage.placed[p], &mut outline);
             continue;
         }
-        silhouette(topology, &pair.weights, run, &mut edges);
+        silhouette(topology, pair.weights(), run, &mut edges);
         let silhouette = edges.iter().flat_map(|&(edge, times)| std::iter::repeat_n(edge, times as usize));
         let caster = Caster {
             topology,
-            weights: &pair.weights,
-            world_from_object: &placed[p].world_from_object,
+            weights: pair.weights(),
+            world_from_object: &stage.placed[p].world_from_object,
             light: pair.light,
         };
         outline.add(&caster, silhouette, run.iter().map(|item| item.triangle as usize));
