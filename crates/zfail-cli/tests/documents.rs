@@ -104,7 +104,7 @@ fn something_is_missing() -> bool {
 }
 
 fn illumination_has_no_scissor() -> bool {
-    !read("crates/zfail-render/src/forward_pass.rs").contains("set_scissor_rect")
+    !read("crates/zfail-render/src/passes/forward_pass.rs").contains("set_scissor_rect")
 }
 
 fn there_are_no_depth_bounds() -> bool {

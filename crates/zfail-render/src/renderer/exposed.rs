@@ -1,11 +1,11 @@
 //! What shines in a frame, in the range that its targets hold best.
 
 use super::parts::Finish;
-use crate::frame::Shading;
-use crate::gpu_data::LightRecord;
+use crate::passes::frame::Shading;
 use crate::scene::SceneOnGpu;
-use crate::surroundings::Surroundings;
-use crate::{Exposure, lights};
+use crate::scene::gpu_data::LightRecord;
+use crate::scene::surroundings::Surroundings;
+use crate::{Exposure, scene::lights};
 use zfail_plan::view::View;
 use zfail_scene::Sky;
 

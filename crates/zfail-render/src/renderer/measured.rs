@@ -2,11 +2,11 @@
 
 use super::exposed::Exposed;
 use super::{Renderer, no_targets};
-use crate::attribute_pass::AttributePass;
-use crate::mask_pass::{Mask, MaskPass};
-use crate::shadow_pass::ShadowPass;
-use crate::targets::Attributes;
-use crate::{AovKind, Aovs, RenderError, Settings, attribute_outputs};
+use crate::passes::attribute_pass::AttributePass;
+use crate::passes::mask_pass::{Mask, MaskPass};
+use crate::passes::shadow_pass::ShadowPass;
+use crate::passes::targets::Attributes;
+use crate::{AovKind, Aovs, RenderError, Settings, output::attribute_outputs};
 use zfail::Counting;
 use zfail_plan::view::View;
 

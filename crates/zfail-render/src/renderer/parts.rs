@@ -1,6 +1,6 @@
 //! How a frame is divided, and how its times are numbered.
 
-use crate::verdict_pass;
+use crate::passes::verdict_pass;
 use std::ops::Range;
 
 /// How a picture is finished.
