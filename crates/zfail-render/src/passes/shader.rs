@@ -159,7 +159,7 @@ mod tests {
 
     #[test]
     fn every_file_is_part_of_a_program() {
-        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/src/shaders");
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/src/passes/shaders");
         let mut files = 0;
         for entry in std::fs::read_dir(folder).expect("the folder of shaders") {
             let text = std::fs::read_to_string(entry.expect("an entry").path()).expect("a text file");
