@@ -1,49 +1,74 @@
 //! Every check of the workspace, one after the other, with a summary at the end.
 
-use crate::cargo;
+use crate::{cargo, fuzz, packages, wasm};
 use std::env;
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// One cargo command.
+/// One or more cargo commands.
 struct Check {
     name: &'static str,
     /// Rustup component without which it cannot run.
     component: Option<&'static str>,
-    arguments: &'static [&'static str],
+    commands: &'static [&'static [&'static str]],
     environment: &'static [(&'static str, &'static str)],
 }
 
 /// In the order in which a newcomer wants to hear of a fault. All of them build the dev profile and share its artefacts.
-const CHECKS: [Check; 5] = [
-    Check { name: "format", component: Some("fmt"), arguments: &["fmt", "--all", "--check"], environment: &[] },
+const CHECKS: [Check; 8] = [
+    Check { name: "format", component: Some("fmt"), commands: &[&["fmt", "--all", "--check"]], environment: &[] },
     Check {
         name: "lints",
         component: Some("clippy"),
-        arguments: &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"],
+        commands: &[&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]],
         environment: &[],
     },
     Check {
         name: "documentation",
         component: None,
-        arguments: &["doc", "--workspace", "--no-deps", "--quiet"],
+        commands: &[&["doc", "--workspace", "--no-deps", "--quiet"]],
         environment: &[("RUSTDOCFLAGS", "-D warnings")],
     },
+    Check { name: TESTS, component: None, commands: &[], environment: &[] },
     Check {
-        // Benches run in criterion's test mode here: each once, without timing.
-        name: "tests and benches",
+        // In criterion's test mode: each once, without timing.
+        name: "benches",
         component: None,
-        arguments: &["test", "--workspace", "--all-targets", "--no-fail-fast"],
-        // xtask has made sure of an adapter, so a test that does not find one must not pass by skipping.
-        environment: &[("ZFAIL_REQUIRE_GPU", "1")],
+        commands: &[&["test", "--workspace", "--benches"]],
+        environment: &[],
     },
     Check {
         name: "documentation examples",
         component: None,
-        arguments: &["test", "--workspace", "--doc"],
-        environment: &[("ZFAIL_REQUIRE_GPU", "1")],
+        commands: &[&["test", "--workspace", "--doc"]],
+        environment: &[],
+    },
+    Check {
+        // Every feature alone, where a missing `cfg` would show; with all of them the workspace is built above.
+        name: "features",
+        component: None,
+        commands: &[
+            &["check", "--package", "zfail-plan", "--no-default-features"],
+            &["check", "--package", "zfail", "--no-default-features"],
+            &["check", "--package", "zfail", "--no-default-features", "--features", "rayon"],
+            &["check", "--package", "zfail", "--no-default-features", "--features", "wgpu-default"],
+            &["check", "--package", "zfail-files", "--no-default-features"],
+            &["check", "--package", "zfail-cli", "--no-default-features"],
+            &["check", "--package", "zfail-cli", "--no-default-features", "--features", "codecs"],
+            &["check", "--package", "zfail-cli", "--no-default-features", "--features", "view"],
+        ],
+        environment: &[],
+    },
+    Check {
+        name: "fuzz targets",
+        component: None,
+        commands: &[&["check", "--manifest-path", "fuzz/Cargo.toml", "--all-targets", "--target-dir", "fuzz/target"]],
+        environment: &[],
     },
 ];
+
+/// The check that [`tests`] runs.
+const TESTS: &str = "tests";
 
 enum Outcome {
     Passed,
@@ -67,10 +92,16 @@ pub fn run(browser: Result<(), String>) -> Result<(), String> {
         Ok(()) => false,
     };
     let mut summary = Vec::new();
+    let mut note = |name, outcome: Outcome, start: Instant| summary.push((name, outcome, start.elapsed()));
     for check in &CHECKS {
         let start = Instant::now();
-        let outcome = check.run(without_browser)?;
-        summary.push((check.name, outcome, start.elapsed()));
+        let outcome = if check.name == TESTS { tests(without_browser)? } else { check.run()? };
+        note(check.name, outcome, start);
+    }
+    for (name, check) in [("browser build", wasm::run as fn() -> Result<(), String>), ("packages", packages::run)] {
+        let start = Instant::now();
+        let outcome = check().inspect_err(|why| println!("{why}"));
+        note(name, if outcome.is_ok() { Outcome::Passed } else { Outcome::Failed }, start);
     }
 
     println!("\nSummary");
@@ -84,27 +115,59 @@ pub fn run(browser: Result<(), String>) -> Result<(), String> {
         (0, 0) => Ok(()),
         (0, _) if !strict => Ok(()),
         (0, n) => Err(format!("{n} skipped, and CI must not skip any")),
-        (n, _) => Err(format!("{n} of {} checks failed", CHECKS.len())),
+        (n, _) => Err(format!("{n} of {} checks failed", summary.len())),
     }
 }
 
 impl Check {
-    fn run(&self, without_browser: bool) -> Result<Outcome, String> {
-        println!("\n+ cargo {}", self.arguments.join(" "));
+    fn run(&self) -> Result<Outcome, String> {
         if let Some(component) = self.component
             && !has_component(component)
         {
             println!("cargo {component} is not installed: skipped");
             return Ok(Outcome::Skipped(component));
         }
-        let mut command = cargo();
-        command.args(self.arguments).envs(self.environment.iter().copied());
-        if without_browser {
-            command.env("ZFAIL_WITHOUT_BROWSER", "1");
+        for arguments in self.commands {
+            println!("\n+ cargo {}", arguments.join(" "));
+            if !passes(cargo().args(*arguments).envs(self.environment.iter().copied()))? {
+                return Ok(Outcome::Failed);
+            }
         }
-        let status = command.status().map_err(|e| format!("cannot start cargo: {e}"))?;
-        Ok(if status.success() { Outcome::Passed } else { Outcome::Failed })
+        Ok(Outcome::Passed)
     }
+}
+
+/// All tests, with the time of each: by cargo nextest where that is installed, which runs each in a process of its own, or else
+/// by the test programs themselves.
+fn tests(without_browser: bool) -> Result<Outcome, String> {
+    let mut command = cargo();
+    if has_component("nextest") {
+        command.args(["nextest", "run", "--workspace", "--lib", "--bins", "--tests", "--examples", "--no-fail-fast"]);
+        // Of those that passed, too.
+        command.args(["--status-level", "pass", "--final-status-level", "fail"]);
+    } else {
+        command.args(["test", "--workspace", "--lib", "--bins", "--tests", "--examples", "--no-fail-fast"]);
+        if let Some((variable, runner)) = timing() {
+            command.env(variable, runner).args(["--", "-Zunstable-options", "--report-time"]);
+        }
+    }
+    if without_browser {
+        command.env("ZFAIL_WITHOUT_BROWSER", "1");
+    }
+    println!("\n+ {command:?}");
+    Ok(if passes(&mut command)? { Outcome::Passed } else { Outcome::Failed })
+}
+
+/// What makes cargo start test programs so that they may be asked for times, which only nightly ones tell by themselves. The
+/// compiler does not see it, so that nothing is built another way. `None` where there is no `env` to start them with.
+fn timing() -> Option<(String, &'static str)> {
+    let host = fuzz::host().ok().filter(|_| cfg!(unix))?;
+    let host = host.to_uppercase().replace('-', "_");
+    Some((format!("CARGO_TARGET_{host}_RUNNER"), "env RUSTC_BOOTSTRAP=1"))
+}
+
+fn passes(command: &mut Command) -> Result<bool, String> {
+    command.status().map(|status| status.success()).map_err(|e| format!("cannot start cargo: {e}"))
 }
 
 fn has_component(name: &str) -> bool {
@@ -124,8 +187,13 @@ fn line(name: &str, outcome: &Outcome, time: Duration) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Outcome, line};
+    use super::{CHECKS, Outcome, TESTS, line};
     use std::time::Duration;
+
+    #[test]
+    fn every_check_has_something_to_do() {
+        assert!(CHECKS.iter().all(|check| check.commands.is_empty() == (check.name == TESTS)));
+    }
 
     #[test]
     fn the_summary_names_the_outcome_and_the_remedy() {

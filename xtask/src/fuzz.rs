@@ -80,7 +80,7 @@ fn all_targets(fuzz: &Path) -> Result<Vec<String>, String> {
 }
 
 /// The toolchain's own target; named, so that instrumentation keeps away from build scripts.
-fn host() -> Result<String, String> {
+pub fn host() -> Result<String, String> {
     let output = Command::new("rustc").arg("-vV").output().map_err(|e| format!("cannot start rustc: {e}"))?;
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     let host = text.lines().find_map(|line| line.strip_prefix("host: "));

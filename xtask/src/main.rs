@@ -7,7 +7,9 @@ mod browser;
 mod checks;
 mod figures;
 mod fuzz;
+mod packages;
 mod setup;
+mod wasm;
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -18,7 +20,10 @@ Usage: cargo xtask <COMMAND>
 
 Commands:
   demo   Render the gallery of built-in scenes into ./gallery
-  test   Run every check: format, lints, documentation, tests, benches in test mode
+  test   Run every check: format, lints, documentation, tests, benches in test mode, features, browser build, packages
+  package
+         Pack every crate that is published, and build the packages by themselves
+  wasm   Check the library for browsers
   fuzz SECONDS [TARGET...]
          Fuzz the loaders, each target for so long; needs a C++ compiler
   figures [NAME]
@@ -35,6 +40,8 @@ fn main() -> ExitCode {
             .and_then(|()| setup::virtual_display())
             .and_then(|()| checks::run(browser::browser())),
         ["fuzz", seconds, ref targets @ ..] => fuzz::run(seconds, targets),
+        ["package"] => packages::run(),
+        ["wasm"] => wasm::run(),
         ["figures"] => setup::graphics_adapter().and_then(|()| figures::run(None)),
         ["figures", name] => setup::graphics_adapter().and_then(|()| figures::run(Some(name))),
         ["help" | "-h" | "--help"] => {

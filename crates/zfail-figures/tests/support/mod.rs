@@ -1,7 +1,6 @@
 //! A scene of a floor and cubes, rays through it that know nothing of shadow volumes, and figures of it as pixels.
 #![allow(dead_code, reason = "each test file uses a part of this")]
 
-use std::env;
 use zfail_figures::{Figures, Options, Overlay};
 use zfail_plan::glam::{DAffine3, DMat3, DVec2, DVec3};
 use zfail_plan::light::LightKind;
@@ -14,11 +13,9 @@ pub const SIZE: [u32; 2] = [128, 96];
 /// What the figures are drawn over.
 pub const GREY: u8 = 90;
 
-/// A device, or `None` with the reason on standard error.
+/// A device, or `None` where the user does without.
 pub fn gpu() -> Option<Gpu> {
-    let gpu = Gpu::new(&GpuOptions::default()).inspect_err(|error| eprintln!("skipped: {error}")).ok();
-    assert!(gpu.is_some() || env::var_os("ZFAIL_REQUIRE_GPU").is_none(), "ZFAIL_REQUIRE_GPU is set");
-    gpu
+    zfail_testing::Need::Gpu.found(Gpu::new(&GpuOptions::default()))
 }
 
 fn block(half: [f32; 3]) -> Mesh {

@@ -9,9 +9,9 @@ use zfail_plan::view::{Projection, View};
 use zfail_render::{Exposure, Gpu, GpuOptions, Picture, Renderer, Settings};
 use zfail_scene::{AlphaMode, Instance, Light, LightShape, Material, Mesh, Primitive, Scene};
 
-/// A device, or `None` with the reason on standard error.
+/// A device, or `None` where the user does without.
 pub fn gpu() -> Option<Gpu> {
-    Gpu::new(&GpuOptions::default()).inspect_err(|error| eprintln!("skipped: {error}")).ok()
+    zfail_testing::Need::Gpu.found(Gpu::new(&GpuOptions::default()))
 }
 
 /// Radiance as it is.

@@ -89,10 +89,8 @@ mod tests {
     #[test]
     fn both_ways_are_measured() {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-        let Ok(adapter) = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())) else {
-            println!("skipped: no graphics adapter found");
-            return;
-        };
+        let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
+        let Some(adapter) = zfail_testing::Need::Gpu.found(adapter) else { return };
         let (device, queue) =
             pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default())).expect("device");
         let start = Instant::now();

@@ -9,6 +9,7 @@ use wgpu::{BufferDescriptor, MapMode, PollType};
 use zfail_plan::casting;
 use zfail_plan::topology::{NONE, Topology};
 use zfail_plan::volume::{self, Volume};
+use zfail_testing::Need;
 
 /// Triangles of the three lists, in ascending order.
 type Triangles = [Vec<[u32; 3]>; 3];
@@ -16,10 +17,8 @@ type Triangles = [Vec<[u32; 3]>; 3];
 fn device() -> Option<(Device, Queue)> {
     let descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     let instance = wgpu::Instance::new(descriptor);
-    let Ok(adapter) = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())) else {
-        println!("skipped: no graphics adapter found");
-        return None;
-    };
+    let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
+    let adapter = Need::Gpu.found(adapter)?;
     // With the least that WebGPU promises.
     Some(pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default())).expect("device"))
 }

@@ -1,0 +1,178 @@
+//! The packages of the crates that are published: packed, unpacked somewhere else, and checked there by themselves.
+//!
+//! In: the workspace. Out: `target/package`, and whether what is in it builds without the rest of the repository. What reaches
+//! for a file beside its package does not.
+
+use crate::{cargo, root};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// In the order in which they are published: each after those that it needs.
+pub const PUBLISHED: [&str; 11] = [
+    "zfail-plan",
+    "zfail",
+    "zfail-scene",
+    "zfail-files",
+    "zfail-builtin",
+    "zfail-render",
+    "zfail-oracle",
+    "zfail-figures",
+    "zfail-methods",
+    "zfail-view",
+    "zfail-cli",
+];
+
+/// Packs all of them and checks the packages.
+///
+/// # Errors
+/// If one cannot be packed or does not build on its own.
+pub fn run() -> Result<(), String> {
+    let packing = PUBLISHED.iter().flat_map(|name| ["--package", name]);
+    let mut pack = cargo();
+    // Cargo would build each by itself, with all that it depends on; below they are built together, once.
+    pack.args(["package", "--no-verify", "--allow-dirty"]).args(packing);
+    succeeds(&mut pack)?;
+
+    let scratch = std::env::temp_dir().join("zfail-packages");
+    let fault = |path: &Path, e: &std::io::Error| format!("cannot write {}: {e}", path.display());
+    if scratch.exists() {
+        fs::remove_dir_all(&scratch).map_err(|e| fault(&scratch, &e))?;
+    }
+    fs::create_dir_all(&scratch).map_err(|e| fault(&scratch, &e))?;
+    let version = env!("CARGO_PKG_VERSION");
+    for name in PUBLISHED {
+        let package = root().join("target/package").join(format!("{name}-{version}.crate"));
+        succeeds(Command::new("tar").arg("-xzf").arg(&package).arg("-C").arg(&scratch))?;
+    }
+    let workspace =
+        fs::read_to_string(root().join("Cargo.toml")).map_err(|e| format!("cannot read Cargo.toml: {e}"))?;
+    let manifest = scratch.join("Cargo.toml");
+    fs::write(&manifest, scratch_manifest(version, &workspace)).map_err(|e| fault(&manifest, &e))?;
+    let lock = scratch.join("Cargo.lock");
+    fs::copy(root().join("Cargo.lock"), &lock).map_err(|e| fault(&lock, &e))?;
+    let mut check = cargo();
+    // What others' crates have been built to is of use here, too.
+    check.args(["check", "--workspace", "--manifest-path"]).arg(&manifest).arg("--target-dir").arg(target());
+    succeeds(&mut check)
+}
+
+/// A workspace of the unpacked packages that takes each from the others, and builds in the profiles of `workspace`.
+fn scratch_manifest(version: &str, workspace: &str) -> String {
+    let folders = PUBLISHED.map(|name| format!("{name}-{version}"));
+    let members = folders.iter().map(|folder| format!("\"{folder}\"")).collect::<Vec<_>>().join(", ");
+    let patches: String =
+        PUBLISHED.iter().zip(&folders).map(|(name, folder)| format!("{name} = {{ path = \"{folder}\" }}\n")).collect();
+    let profiles = workspace.find("[profile.dev]").map_or("", |start| &workspace[start..]);
+    let profiles = profiles.replace("[profile.dev.package.xtask]\nopt-level = 1\n", "");
+    format!("[workspace]\nresolver = \"3\"\nmembers = [{members}]\n\n[patch.crates-io]\n{patches}\n{profiles}")
+}
+
+fn target() -> PathBuf {
+    root().join("target")
+}
+
+fn succeeds(command: &mut Command) -> Result<(), String> {
+    println!("+ {command:?}");
+    match command.status() {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => Err(format!("{command:?} failed ({status})")),
+        Err(e) => Err(format!("cannot start {command:?}: {e}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{PUBLISHED, root, scratch_manifest};
+    use std::fs;
+
+    /// The manifests of the workspace's crates by name.
+    fn manifests() -> Vec<(String, String)> {
+        let crates = fs::read_dir(root().join("crates")).unwrap();
+        let read = |entry: fs::DirEntry| {
+            let text = fs::read_to_string(entry.path().join("Cargo.toml")).unwrap();
+            (entry.file_name().to_string_lossy().into_owned(), text)
+        };
+        crates.map(|entry| read(entry.unwrap())).collect()
+    }
+
+    /// What is wrong with a crate that is published.
+    fn faults(name: &str, manifest: &str) -> Vec<&'static str> {
+        let has = |what: &str| manifest.contains(what);
+        let folder = root().join("crates").join(name);
+        [
+            (!has("readme = "), "no readme"),
+            (!has("keywords = [") || !has("categories = ["), "no keywords or categories"),
+            (!has("include = ["), "no list of what is packed"),
+            (!has("[package.metadata.docs.rs]"), "nothing for docs.rs"),
+            (!folder.join("README.md").is_file(), "its readme is missing"),
+            (!["MIT", "APACHE"].iter().all(|l| folder.join(format!("LICENSE-{l}")).is_file()), "no licence"),
+        ]
+        .into_iter()
+        .filter_map(|(wrong, why)| wrong.then_some(why))
+        .collect()
+    }
+
+    #[test]
+    fn every_crate_is_published_with_all_it_needs_or_says_that_it_is_not() {
+        for (name, manifest) in manifests() {
+            let private = manifest.contains("publish = false");
+            assert_ne!(private, PUBLISHED.contains(&name.as_str()), "{name}");
+            if !private {
+                assert_eq!(faults(&name, &manifest), [""; 0], "{name}");
+            }
+        }
+        assert_eq!(faults("none", "[package]").len(), 6, "faults are found");
+    }
+
+    #[test]
+    fn each_is_published_after_what_it_needs() {
+        let needs = |manifest: &str, other: &str| {
+            let dependencies = manifest.split("[dependencies]").nth(1).unwrap_or_default();
+            let dependencies = dependencies.split("\n[").next().unwrap_or_default();
+            dependencies
+                .lines()
+                .any(|line| line.starts_with(&format!("{other}.")) || line.starts_with(&format!("{other} ")))
+        };
+        let in_order = |order: &[&str]| {
+            manifests().iter().all(|(name, manifest)| {
+                let place = |name: &str| order.iter().position(|other| *other == name);
+                order
+                    .iter()
+                    .all(|other| place(name) >= place(other) || place(name).is_none() || !needs(manifest, other))
+            })
+        };
+        assert!(in_order(&PUBLISHED));
+        let mut backwards = PUBLISHED;
+        backwards.reverse();
+        assert!(!in_order(&backwards));
+    }
+
+    #[test]
+    fn versions_agree_wherever_they_stand() {
+        let read = |path: &str| fs::read_to_string(root().join(path)).unwrap();
+        let workspace = read("Cargo.toml");
+        let version = env!("CARGO_PKG_VERSION");
+        for name in &PUBLISHED[..10] {
+            let line = workspace.lines().find(|line| line.starts_with(&format!("{name} = "))).unwrap();
+            assert!(line.contains(&format!("version = \"={version}\"")), "{line}");
+        }
+        let value = |key: &str| {
+            let line = workspace.lines().find(|line| line.starts_with(key)).unwrap();
+            line.split('"').find(|part| part.starts_with(char::is_numeric)).unwrap().to_owned()
+        };
+        let minor = version.rsplit_once('.').unwrap().0;
+        let row = format!("| {minor} | {} | {} |", value("wgpu = "), value("rust-version = "));
+        for table in ["README.md", "crates/zfail/README.md"] {
+            assert!(read(table).contains(&row), "{table} has no row {row:?}");
+        }
+        assert!(!read("CONTRIBUTING.md").contains(&row), "the row is looked for");
+    }
+
+    #[test]
+    fn the_scratch_workspace_has_every_package_and_the_profiles() {
+        let manifest = scratch_manifest("1.2.3", "[workspace]\nmembers = [\"x\"]\n[profile.dev]\nopt-level = 2\n");
+        assert!(PUBLISHED.iter().all(|name| manifest.contains(&format!("{name} = {{ path = \"{name}-1.2.3\" }}"))));
+        assert!(manifest.ends_with("[profile.dev]\nopt-level = 2\n") && !manifest.contains("\"x\""));
+    }
+}
