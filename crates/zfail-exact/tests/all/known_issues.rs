@@ -1,7 +1,7 @@
 //! What is known to be wrong, and why; each test fails once its issue is gone, or worse.
 
 use zfail_exact::bench::{self, Images};
-use zfail_render::{Gpu, GpuOptions, Settings, Technique};
+use zfail_render::{Settings, Technique};
 
 /// With the lamp next to the eye the planet's shadow shows as a sliver 0.02 pixels wide along its outline. At pixel (198,
 /// 87) the sliver's border passes 0.001 pixels from the centre, less than the 1/256 to which vertices are snapped, and
@@ -9,7 +9,7 @@ use zfail_render::{Gpu, GpuOptions, Settings, Technique};
 /// rasterises shows it; the tile pass, which does not snap, has that pixel right.
 #[test]
 fn the_oracle_misses_slivers_thinner_than_its_probes() {
-    let gpu = Gpu::new(&GpuOptions::default()).expect("a graphics adapter");
+    let Some(gpu) = crate::gpu() else { return };
     let scene = zfail_builtin::scene("nested").expect("a built-in scene");
     let view = scene.cameras[0].view([256, 160], &scene.bounds());
     let settings = Settings { technique: Technique::EverittKilgard, ..Settings::default() };

@@ -12,3 +12,9 @@ mod random_scenes;
 mod real_files;
 mod regressions;
 mod silhouettes;
+
+use zfail_render::{Gpu, GpuOptions};
+
+fn gpu() -> Option<Gpu> {
+    zfail_testing::gpu(Gpu::new(&GpuOptions::default()))
+}

@@ -13,7 +13,7 @@ use zfail_exact::tally::Tally;
 use zfail_files::Limits;
 use zfail_plan::glam::DVec3;
 use zfail_plan::light::LightKind;
-use zfail_render::{Gpu, GpuOptions, Settings, Technique, Tiles};
+use zfail_render::{Gpu, Settings, Technique, Tiles};
 use zfail_scene::{Light, LightShape, Mesh, Scene, cut};
 
 const MODELS: [&str; 24] = [
@@ -79,7 +79,8 @@ fn judge(gpu: &Gpu, name: &str, scene: &Scene, camera: usize, masks: &mut Tally,
     let settings = Settings { technique, tiles: Tiles::Always, ..Settings::default() };
     let rendered = bench::render(gpu, scene, &view, &settings).unwrap_or_else(|e| panic!("{name}: {e}"));
     let truths = bench::truths(scene, &view).unwrap_or_else(|e| panic!("{name}: {e}"));
-    let comparisons = Images { rendered, truths }.compare().unwrap_or_else(|e| panic!("{name}: {e}"));
+    let images = Images { rendered, truths };
+    let comparisons = images.compare().unwrap_or_else(|e| panic!("{name}: {e}"));
     let mut own = Tally::default();
     for comparison in &comparisons {
         own.add(&comparison.mask);
@@ -88,12 +89,13 @@ fn judge(gpu: &Gpu, name: &str, scene: &Scene, camera: usize, masks: &mut Tally,
         if !comparison.mask.wrong.is_empty() || miscounted {
             let (mask, count) = (&comparison.mask.wrong, &comparison.count.wrong);
             failures.push(format!(
-                "{name}, light {}: {} wrong verdicts {:?}, {} wrong counts {:?}",
+                "{name}, light {}: {} wrong verdicts {:?}, {} wrong counts {:?}; {}",
                 comparison.light,
                 mask.len(),
                 &mask[..mask.len().min(3)],
                 count.len(),
-                &count[..count.len().min(3)]
+                &count[..count.len().min(3)],
+                images.keep(&format!("{name}-{camera}"), comparison)
             ));
         }
     }
@@ -103,7 +105,7 @@ fn judge(gpu: &Gpu, name: &str, scene: &Scene, camera: usize, masks: &mut Tally,
 
 #[test]
 fn no_pixel_of_a_real_model_is_wrong() {
-    let gpu = Gpu::new(&GpuOptions::default()).expect("a graphics adapter");
+    let Some(gpu) = crate::gpu() else { return };
     let only = env::var("ZFAIL_MODEL").unwrap_or_default();
     let (mut masks, mut failures) = (Tally::default(), Vec::new());
     for model in MODELS.into_iter().filter(|m| m.contains(&only)) {
@@ -135,7 +137,7 @@ fn no_pixel_of_a_real_model_is_wrong() {
 #[test]
 fn no_pixel_of_other_files_is_wrong() {
     let Some(files) = env::var_os("ZFAIL_FILES") else { return };
-    let gpu = Gpu::new(&GpuOptions::default()).expect("a graphics adapter");
+    let Some(gpu) = crate::gpu() else { return };
     let (mut masks, mut failures) = (Tally::default(), Vec::new());
     for path in env::split_paths(&files) {
         let (mut animated, _) = zfail_files::load_animated(&path, &Limits::default()).unwrap_or_else(|e| panic!("{e}"));
@@ -155,7 +157,7 @@ fn no_pixel_of_other_files_is_wrong() {
 
 #[test]
 fn no_pixel_of_a_built_in_scene_is_wrong() {
-    let gpu = Gpu::new(&GpuOptions::default()).expect("a graphics adapter");
+    let Some(gpu) = crate::gpu() else { return };
     let only = env::var("ZFAIL_MODEL").unwrap_or_default();
     let (mut masks, mut failures) = (Tally::default(), Vec::new());
     for entry in zfail_builtin::SCENES.iter().filter(|e| e.name.contains(&only)) {

@@ -1,7 +1,7 @@
 //! Compressed geometry: meshopt buffer views and Draco primitives, encoded here and loaded back.
 
 use crate::build::{Gltf, TRIANGLE, assert_sound, load_bytes};
-use crate::hostile::{Random, survive};
+use crate::hostile::survive;
 use draco_core::{
     DataType, EncoderBuffer, EncoderOptions, FaceIndex, GeometryAttributeType, Mesh, MeshEncoder, PointAttribute,
     PointIndex,
@@ -13,6 +13,7 @@ use meshoptimizer_rs::codec::{
 };
 use serde_json::{Value, json};
 use zfail_files::Limits;
+use zfail_testing::Random;
 
 /// A strip of quads in the plane z = 0 that does not compress to nothing.
 fn strip() -> (Vec<[f32; 3]>, Vec<u32>) {

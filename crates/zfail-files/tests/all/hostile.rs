@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use std::path::Path;
 use std::time::{Duration, Instant};
 use zfail_files::Limits;
+use zfail_testing::Random;
 
 const SMALL: Limits = Limits { bytes: 1 << 20, image_side: 64 };
 
@@ -188,22 +189,6 @@ fn the_rich_file_loads() {
     assert_sound(&scene);
     assert_eq!((scene.instances.len(), scene.lights.len(), scene.cameras.len(), scene.images.len()), (5, 1, 1, 1));
     assert_eq!(scene.lights[0].excluded, [0]);
-}
-
-/// SplitMix64.
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    pub fn below(&mut self, n: usize) -> usize {
-        (self.next() % n as u64) as usize
-    }
 }
 
 /// Loads what is hostile; a scene that results must be sound, and neither may take long.

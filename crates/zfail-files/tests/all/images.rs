@@ -2,11 +2,12 @@
 
 use crate::build::{Gltf, TRIANGLE, assert_sound};
 use crate::files::assets;
-use crate::hostile::{Random, survive};
+use crate::hostile::survive;
 use image::codecs::{png::PngEncoder, webp::WebPEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 use serde_json::{Value, json};
 use zfail_scene::Scene;
+use zfail_testing::Random;
 
 const RED: [u8; 4] = [200, 10, 20, 255];
 const BLUE: [u8; 4] = [10, 20, 200, 128];

@@ -144,15 +144,15 @@ fn random_soups() {
     for seed in 0..40 {
         let mut random = Random(seed);
         let light = match seed % 3 {
-            0 => LightKind::Directional { direction: random.point(1.0).normalize() },
-            _ => LightKind::Point { position: random.point(1.0), range: f64::INFINITY },
+            0 => LightKind::Directional { direction: random.vector(1.0).normalize() },
+            _ => LightKind::Point { position: random.vector(1.0), range: f64::INFINITY },
         };
-        let shear = DMat3::from_cols(random.point(1.0), random.point(1.0), random.point(1.0));
+        let shear = DMat3::from_cols(random.vector(1.0), random.vector(1.0), random.vector(1.0));
         let parts = vec![
             (soup(&mut random, 12, 1.0), DAffine3::IDENTITY),
             (soup(&mut random, 12, 1.0), DAffine3::from_mat3(shear)),
         ];
-        let view = look(random.point(2.0), random.point(0.3), [64, 48]);
+        let view = look(random.vector(2.0), random.vector(0.3), [64, 48]);
         checked += agree(&format!("soup {seed}"), &scene(parts, light), &view, POLICIES[seed as usize % 4]);
     }
     assert!(checked > 20_000, "{checked}");

@@ -7,23 +7,7 @@ use zfail_plan::casting::{self, Casting};
 use zfail_plan::light::LightKind;
 use zfail_plan::stack::{Caster, Chart, Outline, Work};
 use zfail_plan::topology::Topology;
-
-/// SplitMix64, from -1 to 1.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z ^ z >> 31) as f64 / (1_u64 << 63) as f64 - 1.0
-    }
-
-    fn point(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
-}
+use zfail_testing::Random;
 
 fn f32s(p: DVec3) -> [f32; 3] {
     p.as_vec3().to_array()
@@ -31,13 +15,13 @@ fn f32s(p: DVec3) -> [f32; 3] {
 
 /// Triangles that have nothing in common.
 fn soup(random: &mut Random, count: u32) -> Soup {
-    let positions = (0..3 * count).map(|_| f32s(random.point())).collect();
+    let positions = (0..3 * count).map(|_| f32s(random.vector(1.0))).collect();
     (positions, (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect())
 }
 
 /// Triangles that have one vertex in common.
 fn hedgehog(random: &mut Random, count: u32) -> Soup {
-    let positions = (0..=2 * count).map(|i| f32s(if i == 0 { DVec3::ZERO } else { random.point() })).collect();
+    let positions = (0..=2 * count).map(|i| f32s(if i == 0 { DVec3::ZERO } else { random.vector(1.0) })).collect();
     (positions, (0..count).map(|t| [0, 2 * t + 1, 2 * t + 2]).collect())
 }
 
@@ -115,11 +99,11 @@ impl Shape {
     fn most(&self, random: &mut Random, tries: u32) -> usize {
         let vertices = self.topology.positions().len() as f64;
         let through = (0..tries).map(|i| {
-            let near = self.topology.position(((random.next() * 0.5 + 0.5) * (vertices - 1.0)).round() as u32);
+            let near = self.topology.position(((random.unit()) * (vertices - 1.0)).round() as u32);
             match i % 3 {
-                0 => random.point(),
-                1 => near + random.point() * 1e-3,
-                _ => self.topology.position(0) + random.point() * 0.1_f64.powf(3.0 + 3.0 * random.next()),
+                0 => random.vector(1.0),
+                1 => near + random.vector(1.0) * 1e-3,
+                _ => self.topology.position(0) + random.vector(1.0) * 0.1_f64.powf(3.0 + 3.0 * random.signed()),
             }
         });
         through.map(|p| self.layers(p)).max().unwrap_or(0)

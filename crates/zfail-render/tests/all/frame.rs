@@ -1,6 +1,6 @@
 //! What holds for every frame: sizes, sample counts, backgrounds, exposure, shadows and outputs.
 
-use crate::support::{add, at, gpu, light, look, matt, picture, plain, square, sun, wall};
+use crate::support::{add, assert_same, at, gpu, light, look, matt, picture, plain, square, sun, wall};
 use zfail_plan::glam::{DAffine3, DVec3};
 use zfail_plan::light::LightKind;
 use zfail_plan::view::{Projection, View};
@@ -120,7 +120,7 @@ fn automatic_exposure_follows_the_light_and_leaves_black_alone() {
 
     let (scene, view) = hovering();
     let first = picture(&gpu, &scene, &view, &Settings::default());
-    assert_eq!(first, picture(&gpu, &scene, &view, &Settings::default()), "not deterministic");
+    assert_same("the same once more", &picture(&gpu, &scene, &view, &Settings::default()), &first);
 }
 
 #[test]
@@ -269,7 +269,7 @@ fn a_pose_moves_what_a_new_renderer_would_show() {
     let before = renderer.picture(&view, &plain()).expect("a picture").0;
     renderer.set_pose(&pose(&moved)).expect("a pose that fits");
     let after = renderer.picture(&view, &plain()).expect("a picture").0;
-    assert!(after == picture(&gpu, &moved, &view, &plain()));
+    assert_same("a pose set", &after, &picture(&gpu, &moved, &view, &plain()));
     assert!(after != before);
 
     let mut short = pose(&scene);
@@ -279,7 +279,7 @@ fn a_pose_moves_what_a_new_renderer_would_show() {
     for bad in [short, wild] {
         assert!(matches!(renderer.set_pose(&bad), Err(RenderError::Scene(_))));
     }
-    assert!(after == renderer.picture(&view, &plain()).expect("a picture").0, "a refused pose changes nothing");
+    assert_same("a refused pose", &renderer.picture(&view, &plain()).expect("a picture").0, &after);
     renderer.set_pose(&pose(&scene)).expect("a pose that fits");
-    assert!(before == renderer.picture(&view, &plain()).expect("a picture").0);
+    assert_same("a pose set back", &renderer.picture(&view, &plain()).expect("a picture").0, &before);
 }

@@ -1,6 +1,6 @@
 //! A ground that shows shadows: what it looks like, and what it leaves alone.
 
-use crate::support::{add, at, gpu, light, look, matt, picture, plain, square, sun};
+use crate::support::{add, assert_same, at, gpu, light, look, matt, picture, plain, square, sun};
 use zfail_plan::glam::{DAffine3, DVec3};
 use zfail_plan::light::LightKind;
 use zfail_plan::view::{Projection, View};
@@ -73,11 +73,12 @@ fn the_ground_is_not_there_from_below_without_shadows_or_past_its_rim() {
     let mut parallel = below;
     parallel.projection = Projection::Orthographic { ymag: 2.0, near: -9.0, far: 99.0 };
     for view in [below, parallel] {
-        assert_eq!(picture(&gpu, &scene, &view, &plain()), picture(&gpu, &bare, &view, &plain()));
+        assert_same("from below", &picture(&gpu, &scene, &view, &plain()), &picture(&gpu, &bare, &view, &plain()));
     }
     let above = from_above();
     let unshadowed = Settings { shadows: false, ..plain() };
-    assert_eq!(picture(&gpu, &scene, &above, &unshadowed), picture(&gpu, &bare, &above, &unshadowed));
+    let [with, without] = [&scene, &bare].map(|scene| picture(&gpu, scene, &above, &unshadowed));
+    assert_same("unshadowed ground", &with, &without);
     assert_ne!(picture(&gpu, &scene, &above, &plain()), picture(&gpu, &bare, &above, &plain()), "else it is");
 
     // Its shadow fades where the sun is low, and ends at the rim.
@@ -186,7 +187,7 @@ fn surroundings_change_in_place_and_a_ground_without_extent_is_refused() {
     for next in [&scene, &other, &bare] {
         renderer.set_surroundings(next).expect("surroundings");
         let edited = renderer.picture(&view, &plain()).expect("a picture").0;
-        assert_eq!(edited, picture(&gpu, next, &view, &plain()));
+        assert_same("edited surroundings", &edited, &picture(&gpu, next, &view, &plain()));
     }
     for radius in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let broken = Scene { ground: Some(Ground { height: 0.0, center: [0.0; 2], radius }), ..bare.clone() };

@@ -1,6 +1,6 @@
 //! Falloff curves, cookies and boxes of lights, against closed forms.
 
-use crate::support::{add, at, close, gpu, light, look, matt, picture, plain, reflectance, square, wall};
+use crate::support::{add, assert_same, at, close, gpu, light, look, matt, picture, plain, reflectance, square, wall};
 use zfail_plan::glam::{DAffine3, DMat3, DVec3};
 use zfail_plan::light::LightKind;
 use zfail_plan::view::{Projection, View};
@@ -138,7 +138,8 @@ fn a_cookie_turns_with_the_pose() {
     renderer.set_pose(&pose).expect("a pose that fits");
     let turned = renderer.picture(&head_on(), &plain()).expect("a picture").0;
     scene.set_pose(&pose);
-    assert!(turned == picture(&gpu, &scene, &head_on(), &plain()) && turned != upright);
+    assert_same("a turned cookie", &turned, &picture(&gpu, &scene, &head_on(), &plain()));
+    assert!(turned != upright);
     pose.light_axes[0].x_axis.x = f64::NAN;
     assert!(matches!(renderer.set_pose(&pose), Err(RenderError::Scene(_))));
 }

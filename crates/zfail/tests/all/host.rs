@@ -93,6 +93,9 @@ fn compare(time: f64, with: &[u8], without: &[u8]) -> (usize, usize) {
 
 #[test]
 fn the_images_have_the_shadows_that_rays_find() -> Result<(), Error> {
+    if !crate::stage::has_device() {
+        return Ok(());
+    }
     let mut host = Host::new(&scene(0.0), SIZE)?;
     for time in [0.0, 2.5] {
         let (scene, view) = (scene(time), view(time, SIZE));

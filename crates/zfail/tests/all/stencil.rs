@@ -1,6 +1,6 @@
 //! The zero-tolerance tests of the stencil on whatever device there is: closure, order, depth of stack, cameras.
 
-use crate::stage::{Random, Setup, Soup, stencil};
+use crate::stage::{self, Random, Setup, Soup, stencil};
 use zfail::glam::{DAffine3, DMat3, DQuat, DVec3};
 use zfail::{Counting, LightKind, Projection, View};
 
@@ -118,33 +118,51 @@ fn closure(setup: Setup, ortho: bool) {
 
 #[test]
 fn volumes_of_soups_are_closed() {
+    if !stage::has_device() {
+        return;
+    }
     closure(Setup::default(), false);
 }
 
 #[test]
 fn volumes_of_soups_are_closed_with_four_samples() {
+    if !stage::has_device() {
+        return;
+    }
     closure(Setup { samples: 4, ..Setup::default() }, false);
 }
 
 #[test]
 fn volumes_of_soups_are_closed_in_24_bits() {
+    if !stage::has_device() {
+        return;
+    }
     closure(Setup { depth_stencil: wgpu::TextureFormat::Depth24PlusStencil8, ..Setup::default() }, false);
 }
 
 #[test]
 fn volumes_of_soups_are_closed_under_an_orthographic_camera() {
+    if !stage::has_device() {
+        return;
+    }
     closure(Setup::default(), true);
     closure(Setup { samples: 4, ..Setup::default() }, true);
 }
 
 #[test]
 fn volumes_of_soups_are_closed_when_depth_is_clamped_by_hand() {
+    if !stage::has_device() {
+        return;
+    }
     closure(Setup { clip_control: false, ..Setup::default() }, true);
     closure(Setup { clip_control: false, samples: 4, ..Setup::default() }, true);
 }
 
 #[test]
 fn a_surface_cut_by_the_near_plane_of_an_orthographic_view_does_not_shadow_itself() {
+    if !stage::has_device() {
+        return;
+    }
     // A floor that reaches before the near plane, under a grazing sun behind it: its light cap has to be clipped as
     // the depth pass was, or their depths differ.
     let back = DVec3::new(0.4, 0.5, 0.76).normalize();
@@ -163,6 +181,9 @@ fn a_surface_cut_by_the_near_plane_of_an_orthographic_view_does_not_shadow_itsel
 
 #[test]
 fn an_open_volume_is_noticed() {
+    if !stage::has_device() {
+        return;
+    }
     // The negative control of closure: with depth cleared to infinity sides pass the depth test and do not count, which
     // leaves dark caps alone, as if the volumes were open.
     let setup = Setup { depth_clear: 0.0, draw_depth: false, ..Setup::default() };
@@ -181,6 +202,9 @@ fn an_open_volume_is_noticed() {
 
 #[test]
 fn the_order_of_triangles_does_not_matter() {
+    if !stage::has_device() {
+        return;
+    }
     for seed in 0..6 {
         let mut random = Random(100 + seed);
         let (view, meshes, light) = lit_eye(&mut random, false, false);
@@ -193,7 +217,7 @@ fn the_order_of_triangles_does_not_matter() {
         shuffled.reverse();
         let a = stencil(&Setup::default(), &view, &meshes, light);
         let b = stencil(&Setup::default(), &view, &shuffled, light);
-        assert!(a == b, "seed {seed}: order changed the stencil");
+        zfail_testing::assert_alike(&format!("another order, seed {seed}"), SIZE, &b, &a, 0);
         assert!(a.iter().any(|&s| s > 0));
     }
 }
@@ -224,6 +248,9 @@ fn beside_the_stack() -> View {
 
 #[test]
 fn any_number_of_layers_is_shadow() {
+    if !stage::has_device() {
+        return;
+    }
     let lamps = [
         LightKind::Point { position: DVec3::new(0.0, 10.0, 0.0), range: f64::INFINITY },
         LightKind::Directional { direction: DVec3::NEG_Y },
@@ -250,6 +277,9 @@ fn any_number_of_layers_is_shadow() {
 
 #[test]
 fn distance_from_the_origin_changes_nothing() {
+    if !stage::has_device() {
+        return;
+    }
     let far = DVec3::new(1e6, -2e6, 5e5);
     for seed in 0..4 {
         let mut random = Random(300 + seed);
@@ -271,6 +301,9 @@ fn distance_from_the_origin_changes_nothing() {
 
 #[test]
 fn a_finite_far_plane_gives_the_same_verdicts() {
+    if !stage::has_device() {
+        return;
+    }
     for seed in 0..4 {
         let mut random = Random(400 + seed);
         let (view, mut meshes, light) = lit_eye(&mut random, seed % 2 == 0, false);

@@ -5,6 +5,7 @@ use wgpu::util::DeviceExt;
 use zfail::glam::{DAffine3, DVec3, Mat4, Vec3};
 use zfail::{Caster, Error, Frame, LightKind, MeshDescriptor, Projection, ShadowLight, Shadows, VerdictBits, View};
 use zfail::{Target, wgpu};
+use zfail_testing::assert_alike;
 
 const SIZE: [u32; 2] = [96, 64];
 
@@ -162,11 +163,15 @@ fn look_up(device: &wgpu::Device, queue: &wgpu::Queue, verdicts: &wgpu::Texture,
 
 #[test]
 fn bits_say_what_the_stencil_says() {
+    if !stage::has_device() {
+        return;
+    }
     let drawn = draw(false);
     let shadowed = |mask: &[bool]| mask.iter().filter(|&&lit| !lit).count();
     for (light, (bits, stencil)) in drawn.looked_up.iter().zip(&drawn.stencils).enumerate() {
         assert!(shadowed(stencil) > 20 && shadowed(stencil) < 4000, "light {light}: {}", shadowed(stencil));
-        assert!(bits == stencil, "light {light}");
+        let shown = |mask: &[bool]| mask.iter().map(|&lit| if lit { 255 } else { 0 }).collect::<Vec<u8>>();
+        assert_alike(&format!("bits of light {light}"), SIZE, &shown(bits), &shown(stencil), 0);
         // Another light's bits are others.
         assert!(*bits != drawn.stencils[(light + 1) % drawn.stencils.len()], "light {light}");
     }
@@ -174,12 +179,18 @@ fn bits_say_what_the_stencil_says() {
 
 #[test]
 fn a_hosts_own_matrices_give_the_same() {
+    if !stage::has_device() {
+        return;
+    }
     let (own, given) = (draw(true), draw(false));
     assert!(own.stencils == given.stencils && own.looked_up == given.looked_up);
 }
 
 #[test]
 fn matrices_that_show_something_else_are_refused() {
+    if !stage::has_device() {
+        return;
+    }
     let (device, queue) = stage::device(&Setup::default());
     let mut shadows = Shadows::new(&device, &queue);
     let ((positions, triangles), place) = &meshes()[1];

@@ -1,6 +1,5 @@
 //! A scene of a floor and cubes, rays through it that know nothing of shadow volumes, and figures of it as pixels.
 
-use std::env;
 use zfail_figures::{Figures, Options, Overlay};
 use zfail_plan::glam::{DAffine3, DMat3, DVec2, DVec3};
 use zfail_plan::light::LightKind;
@@ -13,11 +12,9 @@ pub const SIZE: [u32; 2] = [128, 96];
 /// What the figures are drawn over.
 pub const GREY: u8 = 90;
 
-/// A device, or `None` with the reason on standard error.
+/// A device, or `None` if the test is to be skipped.
 pub fn gpu() -> Option<Gpu> {
-    let gpu = Gpu::new(&GpuOptions::default()).inspect_err(|error| eprintln!("skipped: {error}")).ok();
-    assert!(gpu.is_some() || env::var_os("ZFAIL_REQUIRE_GPU").is_none(), "ZFAIL_REQUIRE_GPU is set");
-    gpu
+    zfail_testing::gpu(Gpu::new(&GpuOptions::default()))
 }
 
 fn block(half: [f32; 3]) -> Mesh {
@@ -138,4 +135,9 @@ pub fn distance(a: [u8; 3], b: [u8; 3]) -> i32 {
 /// All pixels of [`SIZE`], by rows.
 pub fn pixels() -> impl Iterator<Item = [u32; 2]> {
     (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y]))
+}
+
+/// A figure as a picture.
+pub fn rgba(figure: &[[u8; 3]]) -> Vec<u8> {
+    figure.iter().flat_map(|&[r, g, b]| [r, g, b, 255]).collect()
 }

@@ -6,7 +6,6 @@ mod ply;
 mod stl;
 
 use crate::build::assert_sound;
-use crate::hostile::Random;
 use obj::OBJ;
 use ply::{PLY, binary_ply};
 use std::fs;
@@ -17,6 +16,7 @@ use tempfile::TempDir;
 use zfail_files::{Limits, LoadError};
 use zfail_plan::glam::DVec3;
 use zfail_scene::{Scene, world_triangle};
+use zfail_testing::Random;
 
 /// Loads the first of `files`, which lie in one folder.
 fn load(files: &[(&str, &[u8])]) -> Result<Scene, LoadError> {

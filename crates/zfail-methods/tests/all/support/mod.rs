@@ -10,16 +10,9 @@ use zfail_scene::{Instance, Light, LightShape, Material, Mesh, Primitive, Scene}
 
 pub const SIZE: [u32; 2] = [160, 100];
 
-/// A device, or `None` with the reason on standard error; a failure if `ZFAIL_REQUIRE_GPU` is set.
+/// A device, or `None` if the test is to be skipped.
 pub fn gpu() -> Option<Gpu> {
-    match Gpu::new(&GpuOptions::default()) {
-        Ok(gpu) => Some(gpu),
-        Err(error) if std::env::var_os("ZFAIL_REQUIRE_GPU").is_some() => panic!("{error}"),
-        Err(error) => {
-            eprintln!("skipped: {error}");
-            None
-        }
-    }
+    zfail_testing::gpu(Gpu::new(&GpuOptions::default()))
 }
 
 /// A scene under a view, with the truth for every light.

@@ -4,27 +4,7 @@ use zfail_plan::glam::{DAffine3, DMat3, DVec3};
 use zfail_plan::light::LightKind;
 use zfail_plan::view::{Projection, View};
 use zfail_scene::{Instance, Light, LightShape, Material, Mesh, Primitive, Scene};
-
-/// SplitMix64: enough randomness for tests, the same everywhere.
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    pub fn between(&mut self, lo: f64, hi: f64) -> f64 {
-        lo + (hi - lo) * self.unit()
-    }
-
-    pub fn point(&mut self, radius: f64) -> DVec3 {
-        DVec3::from_array(std::array::from_fn(|_| self.between(-radius, radius)))
-    }
-}
+pub use zfail_testing::Random;
 
 pub fn mesh(positions: Vec<[f32; 3]>, triangles: Vec<[u32; 3]>) -> Mesh {
     let count = triangles.len() as u32;
@@ -66,9 +46,9 @@ pub fn sphere(radius: f64, n: u32) -> Mesh {
 pub fn soup(random: &mut Random, count: u32, radius: f64) -> Mesh {
     let mut positions = Vec::new();
     for _ in 0..count {
-        let center = random.point(radius);
+        let center = random.vector(radius);
         for _ in 0..3 {
-            positions.push((center + random.point(0.7 * radius)).as_vec3().to_array());
+            positions.push((center + random.vector(0.7 * radius)).as_vec3().to_array());
         }
     }
     mesh(positions, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())

@@ -6,9 +6,9 @@ use zfail_plan::view::{Projection, View};
 use zfail_render::{Exposure, Gpu, GpuOptions, Picture, Renderer, Settings};
 use zfail_scene::{AlphaMode, Instance, Light, LightShape, Material, Mesh, Primitive, Scene};
 
-/// A device, or `None` with the reason on standard error.
+/// A device, or `None` if the test is to be skipped.
 pub fn gpu() -> Option<Gpu> {
-    Gpu::new(&GpuOptions::default()).inspect_err(|error| eprintln!("skipped: {error}")).ok()
+    zfail_testing::gpu(Gpu::new(&GpuOptions::default()))
 }
 
 /// Radiance as it is.
@@ -102,4 +102,12 @@ pub fn reflectance(albedo: f64, metallic: f64, roughness: f64, n: DVec3, v: DVec
 /// Whether `a` is within `relative` of `b`.
 pub fn close(a: f32, b: f64, relative: f64) -> bool {
     (f64::from(a) - b).abs() <= relative * b.abs() + 1e-6
+}
+
+/// Asserts that two pictures agree in every value.
+#[track_caller]
+pub fn assert_same(name: &str, actual: &Picture, expected: &Picture) {
+    assert_eq!(actual.size, expected.size, "{name}");
+    zfail_testing::assert_alike(name, actual.size, &actual.rgba8, &expected.rgba8, 0);
+    assert!(actual == expected, "{name}: what is shown agrees, radiance does not");
 }

@@ -1,37 +1,17 @@
 //! The least host there is: a depth pass of its own, shadows from zfail, and the stencil read back.
 
+use std::sync::OnceLock;
+use wgpu::RequestAdapterError;
 use wgpu::util::DeviceExt;
-use zfail::glam::{DAffine3, DVec3};
+use zfail::glam::DAffine3;
 use zfail::low_level::{self, FramePlan};
 use zfail::{Bounds, Caster, Counting, Frame, LightKind, MeshDescriptor, ShadowLight, Shadows, Steps, Target};
 use zfail::{Technique, View};
+pub use zfail_testing::Random;
+use zfail_testing::Raw;
 
 /// A mesh as tests write it.
 pub type Soup = (Vec<[f32; 3]>, Vec<[u32; 3]>);
-
-/// Small deterministic random numbers (splitmix64).
-pub struct Random(pub u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    pub fn below(&mut self, n: usize) -> usize {
-        (self.next() % n as u64) as usize
-    }
-
-    pub fn real(&mut self, lo: f64, hi: f64) -> f64 {
-        lo + (hi - lo) * (self.next() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    pub fn vector(&mut self, extent: f64) -> DVec3 {
-        DVec3::new(self.real(-extent, extent), self.real(-extent, extent), self.real(-extent, extent))
-    }
-}
 
 /// What one test varies.
 #[derive(Clone, Copy)]
@@ -62,23 +42,33 @@ impl Default for Setup {
     }
 }
 
+/// The device of all tests, which may or may not clamp depth by itself.
+fn found(clip_control: bool) -> &'static Result<Raw, RequestAdapterError> {
+    static FOUND: [OnceLock<Result<Raw, RequestAdapterError>>; 2] = [OnceLock::new(), OnceLock::new()];
+    let describe = |adapter: &wgpu::Adapter| {
+        let mut features = zfail::wanted_features(adapter.features());
+        if !clip_control {
+            features.remove(wgpu::Features::DEPTH_CLIP_CONTROL);
+        }
+        wgpu::DeviceDescriptor {
+            required_features: features,
+            required_limits: adapter.limits(),
+            ..wgpu::DeviceDescriptor::default()
+        }
+    };
+    FOUND[usize::from(clip_control)].get_or_init(|| zfail_testing::device(describe))
+}
+
+/// Whether there is a device; if not, the test is to be skipped.
+#[track_caller]
+pub fn has_device() -> bool {
+    zfail_testing::gpu(found(true).as_ref()).is_some()
+}
+
 /// A device with what the set-up asks for.
 pub fn device(setup: &Setup) -> (wgpu::Device, wgpu::Queue) {
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    descriptor.backends = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY);
-    let instance = wgpu::Instance::new(descriptor);
-    let options = wgpu::RequestAdapterOptions::default();
-    let adapter = pollster::block_on(instance.request_adapter(&options)).expect("a graphics adapter");
-    let mut features = zfail::wanted_features(adapter.features());
-    if !setup.clip_control {
-        features.remove(wgpu::Features::DEPTH_CLIP_CONTROL);
-    }
-    let descriptor = wgpu::DeviceDescriptor {
-        required_features: features,
-        required_limits: adapter.limits(),
-        ..wgpu::DeviceDescriptor::default()
-    };
-    pollster::block_on(adapter.request_device(&descriptor)).expect("device")
+    let raw = found(setup.clip_control).as_ref().expect("a test that has asked whether there is one");
+    (raw.device.clone(), raw.queue.clone())
 }
 
 const DEPTH: &str = "
