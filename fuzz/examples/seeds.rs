@@ -4,7 +4,7 @@
 //! `cargo run --manifest-path fuzz/Cargo.toml --example seeds -- crates/zfail-files/tests/corpus/seeds`.
 
 #[allow(dead_code, reason = "the loader's tests need more of it")]
-#[path = "../../crates/zfail-files/tests/read/build.rs"]
+#[path = "../../crates/zfail-files/tests/all/build.rs"]
 mod build;
 
 use base64::Engine;

@@ -7,7 +7,7 @@
 
 #[path = "../../crates/zfail-files/tests/corpus/loading.rs"]
 pub mod loading;
-#[path = "../../crates/zfail-plan/tests/deep/mod.rs"]
+#[path = "../../crates/zfail-plan/tests/all/deep/mod.rs"]
 pub mod deep;
 pub mod mutate;
 

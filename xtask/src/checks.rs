@@ -34,7 +34,7 @@ const CHECKS: [Check; 8] = [
         // In criterion's test mode: each once, without timing.
         name: "benches",
         component: None,
-        commands: &[&["test", "--workspace", "--benches"]],
+        commands: &[&["test", "--workspace", "--bench", "*"]],
         environment: &[],
     },
     Check {

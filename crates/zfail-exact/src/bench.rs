@@ -66,6 +66,39 @@ impl Images {
         };
         self.truths.iter().enumerate().map(compare).collect()
     }
+
+    /// Writes pictures of one light's mask and counts and of where they are wrong, to look at; says where.
+    #[must_use]
+    pub fn keep(&self, name: &str, comparison: &Comparison) -> String {
+        let light = comparison.light;
+        let size = self.truths[light].size;
+        let marks = |report: &Report| {
+            let mut marks = vec![0; (size[0] * size[1]) as usize];
+            report.wrong.iter().for_each(|wrong| marks[(wrong.y * size[0] + wrong.x) as usize] = 255);
+            marks
+        };
+        let (mask, count) = (marks(&comparison.mask), marks(&comparison.count));
+        let rendered = [&self.rendered.shadow[light], &self.rendered.stencil[light]];
+        let pictures: [(&str, &[u8]); 4] =
+            [("mask", rendered[0]), ("mask-wrong", &mask), ("counts", rendered[1]), ("counts-wrong", &count)];
+        zfail_testing::keep(&format!("{name}-light-{light}"), size, &pictures)
+    }
+
+    /// Compares every light, as [`Self::compare`] does, and keeps the pictures of those that are wrong.
+    ///
+    /// # Errors
+    /// If something cannot be compared, or is wrong: then with where the pictures are.
+    pub fn judge(&self, name: &str) -> Result<Vec<Comparison>, String> {
+        let comparisons = self.compare().map_err(|error| format!("{name}: {error}"))?;
+        match comparisons.iter().find(|comparison| comparison.failed()) {
+            None => Ok(comparisons),
+            Some(wrong) => {
+                let [masks, counts] = [&wrong.mask, &wrong.count].map(|report| report.wrong.len());
+                let kept = self.keep(name, wrong);
+                Err(format!("{name}, light {}: {masks} wrong verdicts, {counts} wrong counts; {kept}", wrong.light))
+            }
+        }
+    }
 }
 
 /// Renders `recipe` and judges it.

@@ -259,3 +259,22 @@ fn lookup(gpu: &Gpu, uniform: &MapUniform, maps: &TextureView) -> Surfaces {
     ];
     Surfaces::new(gpu, ["", include_str!("shadow_map.wgsl")], &layout, &entries)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::MapUniform;
+    use zfail_testing::{layout, naga::valid::Capabilities, wgsl::validate};
+
+    #[test]
+    fn a_map_lies_as_its_shader_reads_it() {
+        let source = [include_str!("stage/surface.wgsl"), include_str!("shadow_map.wgsl")].concat();
+        let module = validate(&source, Capabilities::empty()).expect("WGSL");
+        layout!(
+            &module,
+            "Map",
+            MapUniform,
+            [faces, light, face_count, resolution, pcf, near, range, bias, slope_bias, texel]
+        )
+        .expect("agreement");
+    }
+}

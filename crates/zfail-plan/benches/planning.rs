@@ -2,7 +2,7 @@
 //!
 //! Tori of 10^3 to 10^6 triangles: closed, embedded, with a silhouette that grows as the square root.
 
-#[path = "../tests/shapes/mod.rs"]
+#[path = "../tests/all/shapes/mod.rs"]
 mod shapes;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};

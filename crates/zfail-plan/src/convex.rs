@@ -189,11 +189,8 @@ mod tests {
     /// Extremes over the polyhedron are those over the half spaces, found by dense sampling.
     #[test]
     fn cuts_leave_the_intersection() {
-        let mut seed = 11_u64;
-        let mut random = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 33) as f64 / f64::from(1_u32 << 31) * 2.0 - 1.0
-        };
+        let mut numbers = zfail_testing::Random(11);
+        let mut random = || numbers.signed();
         let cube = Bounds { min: DVec3::splat(-1.0), max: DVec3::ONE };
         let mut knife = Knife::default();
         for _ in 0..100 {
@@ -235,11 +232,8 @@ mod tests {
     fn planes_along_faces_and_through_edges_lose_nothing() {
         let mut knife = Knife::default();
         for round in 0..4000_u32 {
-            let mut seed = u64::from(round) + 1;
-            let mut pick = |n: u32| {
-                seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                (seed >> 33) as u32 % n
-            };
+            let mut numbers = zfail_testing::Random(u64::from(round));
+            let mut pick = |n: u32| numbers.below(n as usize) as u32;
             let turn = DQuat::from_euler(glam::EulerRot::XYZ, 0.1 * f64::from(pick(60)), 0.7, 0.3 * f64::from(pick(9)));
             let shift = DVec3::new(0.3, -0.7, 1e3 * f64::from(pick(2)));
             let place = |p: DVec3| turn * p + shift;

@@ -220,11 +220,8 @@ mod tests {
 
     #[test]
     fn the_rectangle_of_a_ball_is_that_of_many_points_on_it() {
-        let mut seed = 1_u64;
-        let mut random = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 33) as f64 / f64::from(1_u32 << 31) * 2.0 - 1.0
-        };
+        let mut numbers = zfail_testing::Random(1);
+        let mut random = || numbers.signed();
         let mut seen = 0;
         for _ in 0..300 {
             let center = DVec3::new(random(), random(), random() - 0.7) * 3.0;

@@ -1,5 +1,6 @@
 //! Planning a frame like one before allocates nothing.
 
+#[path = "all/shapes/mod.rs"]
 mod shapes;
 
 use glam::{DAffine3, DVec3};

@@ -6,13 +6,7 @@ use zfail_render::{Gpu, GpuOptions, Renderer, Settings};
 const SIZE: [u32; 2] = [640, 360];
 
 fn frame(c: &mut Criterion) {
-    let gpu = match Gpu::new(&GpuOptions::default()) {
-        Ok(gpu) => gpu,
-        Err(error) => {
-            println!("skipped: {error}");
-            return;
-        }
-    };
+    let Some(gpu) = zfail_testing::gpu(Gpu::new(&GpuOptions::default())) else { return };
     let mut group = c.benchmark_group("frame");
     group.sample_size(10);
     for name in ["container", "room", "cathedral"] {

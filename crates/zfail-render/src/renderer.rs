@@ -357,7 +357,7 @@ mod tests {
 
     #[test]
     fn a_frame_written_directly_is_the_developed_picture() {
-        let Some(gpu) = zfail_testing::Need::Gpu.found(Gpu::new(&GpuOptions::default())) else { return };
+        let Some(gpu) = zfail_testing::gpu(Gpu::new(&GpuOptions::default())) else { return };
         let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
         let world_from_view = DAffine3::from_translation(DVec3::new(0.0, 0.0, 2.5));
         let view = View::new(world_from_view, projection, [64, 64]);

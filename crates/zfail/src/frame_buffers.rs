@@ -107,3 +107,15 @@ fn buffer(device: &Device, label: &str, usage: BufferUsages, size: u64) -> Buffe
         mapped_at_creation: false,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::DrawRecord;
+    use zfail_testing::{layout, naga::valid::Capabilities, wgsl::validate};
+
+    #[test]
+    fn a_draw_lies_as_its_shader_reads_it() {
+        let module = validate(include_str!("volume.wgsl"), Capabilities::MULTISAMPLED_SHADING).expect("WGSL");
+        layout!(&module, "Draw", DrawRecord, [clip_from_object, light, reach]).expect("agreement");
+    }
+}

@@ -128,7 +128,7 @@ mod tests {
     /// Both experiments on this machine, with a truth that every adapter misses and with one that none does.
     #[test]
     fn the_experiments_are_made_on_real_adapters() {
-        let Some(gpu) = zfail_testing::Need::Gpu.found(Gpu::new(&GpuOptions::default())) else { return };
+        let Some(gpu) = zfail_testing::gpu(Gpu::new(&GpuOptions::default())) else { return };
         let scene = zfail_builtin::scene("jail").unwrap();
         let view = scene.cameras[0].view([48, 27], &scene.bounds());
         let shot = Shot { scene, camera: String::new(), view, lights: vec![0] };

@@ -249,3 +249,19 @@ fn bind(gpu: &Gpu, layout: &wgpu::BindGroupLayout, resources: &[(u32, wgpu::Bind
         .collect();
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("figure"), layout, entries: &entries })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{FrameRecord, palette};
+    use zfail_testing::{layout, naga::valid::Capabilities, wgsl};
+
+    #[test]
+    fn records_lie_as_their_shaders_read_them() {
+        let validate = |source| wgsl::validate(source, Capabilities::MULTISAMPLED_SHADING).expect("WGSL");
+        let (figure, composite) = (validate(include_str!("figure.wgsl")), validate(include_str!("composite.wgsl")));
+        layout!(&figure, "Frame", FrameRecord, [clip_from_origin, size]).expect("agreement");
+        let heat = |colors: usize| wgsl::compare_layout(&composite, "Heat", 16 * colors, &[("colors", 0)]);
+        heat(palette::COUNTS.len()).expect("agreement");
+        heat(palette::COUNTS.len() + 1).expect_err("a colour too many");
+    }
+}

@@ -4,13 +4,11 @@ use super::Triangulator;
 use glam::{DVec3, Vec2, Vec3};
 use rustc_hash::FxHashMap;
 use std::f32::consts::TAU;
+use zfail_testing::Random;
 
-/// A number in 0..1 that only looks random.
-fn random(seed: &mut u64) -> f32 {
-    *seed = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let mut z = (*seed ^ *seed >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((z ^ z >> 31) >> 40) as f32 / (1_u32 << 24) as f32
+/// A number in 0..1.
+fn random(numbers: &mut Random) -> f32 {
+    (numbers.next() >> 40) as f32 / (1_u32 << 24) as f32
 }
 
 /// The triangles of a polygon, and what was wrong with it.
@@ -74,15 +72,15 @@ fn fault(points: &[Vec3], triangles: &[[u32; 3]], up: Vec3) -> Option<String> {
     }
 }
 
-fn star(corners: u32, seed: &mut u64) -> Vec<Vec2> {
-    let spike = |i: u32| Vec2::from_angle(i as f32 * TAU / corners as f32) * (0.1 + random(seed));
+fn star(corners: u32, numbers: &mut Random) -> Vec<Vec2> {
+    let spike = |i: u32| Vec2::from_angle(i as f32 * TAU / corners as f32) * (0.1 + random(numbers));
     (0..corners).map(spike).collect()
 }
 
 /// Teeth that lean over by `lean` of their height.
-fn comb(teeth: u32, lean: f32, seed: &mut u64) -> Vec<Vec2> {
+fn comb(teeth: u32, lean: f32, numbers: &mut Random) -> Vec<Vec2> {
     let tooth = |i: u32| {
-        let (x, height) = (i as f32, 1.0 + 9.0 * random(seed));
+        let (x, height) = (i as f32, 1.0 + 9.0 * random(numbers));
         [Vec2::new(x, 0.0), Vec2::new(x + 0.4 + lean * height, height)]
     };
     let mut points: Vec<Vec2> = (0..teeth).flat_map(tooth).collect();
@@ -126,11 +124,11 @@ fn convex_ones_become_fans() {
 
 #[test]
 fn every_simple_polygon_is_covered_once() {
-    let mut seed = 1;
+    let mut numbers = Random(1);
     let mut polygons = vec![holes(), spiral(1000, 7.0), spiral(133, 2.0)];
     for k in 0..60 {
-        polygons.push(star(4 + 7 * k, &mut seed));
-        polygons.push(comb(2 + 3 * k, k as f32 / 10.0, &mut seed));
+        polygons.push(star(4 + 7 * k, &mut numbers));
+        polygons.push(comb(2 + 3 * k, k as f32 / 10.0, &mut numbers));
     }
     let (mut fans_fail, count) = (0, polygons.len());
     for (i, polygon) in polygons.into_iter().enumerate() {
@@ -185,17 +183,18 @@ fn edges_that_touch_others_stay_edges() {
 
 #[test]
 fn polygons_that_cross_themselves_keep_their_edges() {
-    let mut seed = 5;
+    let mut numbers = Random(5);
     for corners in 4..80 {
-        let scattered: Vec<Vec3> =
-            (0..corners).map(|_| Vec3::new(random(&mut seed), random(&mut seed), 0.1 * random(&mut seed))).collect();
+        let scattered: Vec<Vec3> = (0..corners)
+            .map(|_| Vec3::new(random(&mut numbers), random(&mut numbers), 0.1 * random(&mut numbers)))
+            .collect();
         let (triangles, notice) = cut(&scattered);
         assert!(bounds(&scattered, &triangles), "{corners} corners");
         assert!(corners < 6 || notice.is_some(), "{corners} corners");
         assert!(triangles.len() <= 64 * scattered.len());
     }
     // One crossing, far from most of the polygon: the rest is as it should be.
-    let mut twisted = comb(100, 0.0, &mut seed);
+    let mut twisted = comb(100, 0.0, &mut numbers);
     twisted.extend([Vec2::new(-2.0, -1.0), Vec2::new(-2.0, 0.0)]);
     let points = flat(&twisted);
     let (triangles, notice) = cut(&points);
@@ -209,7 +208,7 @@ fn polygons_that_cross_themselves_keep_their_edges() {
     let overlap = all.sum::<f32>() - net;
     assert!((0.5..8.0).contains(&overlap), "{overlap}");
     // Scribbles, and corners that hide each other.
-    let scribble: Vec<Vec3> = (0..20_000).map(|_| Vec3::new(random(&mut seed), random(&mut seed), 0.0)).collect();
+    let scribble: Vec<Vec3> = (0..20_000).map(|_| Vec3::new(random(&mut numbers), random(&mut numbers), 0.0)).collect();
     let (triangles, notice) = cut(&scribble);
     assert!(bounds(&scribble, &triangles) && notice.unwrap().contains("all over"));
     let step = [[0, 0, 0], [3, 0, 0], [1, 1, 0], [1, 1, 1], [0, 3, 0]].map(|p| Vec3::from_array(p.map(|x| x as f32)));
@@ -218,11 +217,11 @@ fn polygons_that_cross_themselves_keep_their_edges() {
 
 #[test]
 fn many_corners_take_little_time() {
-    let mut seed = 9;
+    let mut numbers = Random(9);
     let many = [
-        star(100_000, &mut seed),
-        comb(50_000, 0.0, &mut seed),
-        comb(50_000, 1000.0, &mut seed),
+        star(100_000, &mut numbers),
+        comb(50_000, 0.0, &mut numbers),
+        comb(50_000, 1000.0, &mut numbers),
         spiral(100_000, 50.0),
     ];
     for polygon in many {

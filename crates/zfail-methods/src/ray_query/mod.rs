@@ -195,3 +195,17 @@ fn layout(device: &wgpu::Device) -> BindGroupLayout {
         entries: &[entry(0, uniform), entry(1, BindingType::AccelerationStructure { vertex_return: false })],
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::RaysUniform;
+    use zfail_testing::{layout, naga::valid::Capabilities, wgsl::validate};
+
+    #[test]
+    fn rays_lie_as_their_shader_reads_them() {
+        let parts = [include_str!("../stage/surface.wgsl"), include_str!("ray_query.wgsl")];
+        let source = ["enable wgpu_ray_query;\n", parts[0], parts[1]].concat();
+        let module = validate(&source, Capabilities::RAY_QUERY).expect("WGSL");
+        layout!(&module, "Rays", RaysUniform, [light, eye, offset]).expect("agreement");
+    }
+}

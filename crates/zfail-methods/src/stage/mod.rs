@@ -288,12 +288,7 @@ fn verdict(encoder: &mut CommandEncoder, targets: &Targets, pipelines: &Pipeline
 
 #[cfg(test)]
 mod tests {
-    fn validate(source: &str) -> Result<(), String> {
-        let module = naga::front::wgsl::parse_str(source).map_err(|e| e.emit_to_string(source))?;
-        let mut validator =
-            naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::all());
-        validator.validate(&module).map(drop).map_err(|e| e.emit_to_string(source))
-    }
+    use zfail_testing::{naga::valid::Capabilities, wgsl::validate};
 
     /// Also those that few devices can run.
     #[test]
@@ -301,8 +296,9 @@ mod tests {
         let rays = ["enable wgpu_ray_query;\n", SURFACE, include_str!("../ray_query/ray_query.wgsl")].concat();
         let map = [SURFACE, include_str!("../shadow_map.wgsl")].concat();
         for source in [include_str!("stage.wgsl"), &map, &rays] {
-            validate(source).unwrap_or_else(|message| panic!("{message}"));
-            assert!(validate(&format!("{source}fn wrong() -> f32 {{ return 1u; }}")).is_err());
+            validate(source, Capabilities::RAY_QUERY).unwrap_or_else(|message| panic!("{message}"));
+            let faulty = format!("{source}fn wrong() -> f32 {{ return 1u; }}");
+            assert!(validate(&faulty, Capabilities::RAY_QUERY).is_err());
         }
     }
 

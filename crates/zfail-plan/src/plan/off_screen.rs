@@ -115,11 +115,8 @@ mod tests {
         let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
         let view = View::new(DAffine3::IDENTITY, projection, [64, 48]);
         let within = [10, 5, 20, 30];
-        let mut seed = 5_u64;
-        let mut random = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 33) as f64 / f64::from(1_u32 << 31) * 2.0 - 1.0
-        };
+        let mut numbers = zfail_testing::Random(5);
+        let mut random = || numbers.signed();
         let (mut seen, mut culled) = (0, 0);
         for round in 0..3000 {
             let center = DVec3::new(random(), random(), random()) * 6.0;

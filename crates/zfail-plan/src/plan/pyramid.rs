@@ -162,11 +162,8 @@ mod tests {
     /// Points of the exact hull are never excluded, whatever holds them.
     #[test]
     fn nothing_that_meets_the_hull_is_excluded() {
-        let mut seed = 3_u64;
-        let mut random = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 33) as f64 / f64::from(1_u32 << 31) * 2.0 - 1.0
-        };
+        let mut numbers = zfail_testing::Random(3);
+        let mut random = || numbers.signed();
         let (mut clear, mut met) = (0, 0);
         for round in 0..4000 {
             let at = DVec3::new(random(), random(), random()) * if round % 3 == 0 { 0.2 } else { 5.0 };

@@ -144,11 +144,8 @@ mod tests {
 
     #[test]
     fn every_point_that_a_light_reaches_is_within() {
-        let mut seed = 9_u64;
-        let mut random = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 33) as f64 / f64::from(1_u32 << 31) * 2.0 - 1.0
-        };
+        let mut numbers = zfail_testing::Random(9);
+        let mut random = || numbers.signed();
         let mut reached = 0;
         for _ in 0..400 {
             let position = DVec3::new(random(), random(), random() - 1.0) * 4.0;

@@ -162,11 +162,8 @@ mod tests {
     fn every_visible_point_in_a_shadow_lies_in_its_pixels() {
         let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
         let view = View::new(DAffine3::IDENTITY, projection, [160, 120]);
-        let mut seed = 21_u64;
-        let mut random = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 33) as f64 / f64::from(1_u32 << 31) * 2.0 - 1.0
-        };
+        let mut numbers = zfail_testing::Random(21);
+        let mut random = || numbers.signed();
         let (mut shadowed, mut small) = (0, 0);
         for round in 0..400 {
             let room =

@@ -120,7 +120,7 @@ impl Program {
 mod tests {
     use super::*;
     use crate::scene::gpu_data::{FrameUniform, LightRecord, MaterialUniform, SlotUniform};
-    use naga::valid::{Capabilities, ValidationFlags, Validator};
+    use zfail_testing::{layout, naga};
 
     fn programs() -> Vec<Program> {
         [
@@ -135,11 +135,7 @@ mod tests {
     }
 
     fn validate(source: &str) -> Result<naga::Module, String> {
-        let module = naga::front::wgsl::parse_str(source).map_err(|e| e.emit_to_string(source))?;
-        Validator::new(ValidationFlags::all(), Capabilities::MULTISAMPLED_SHADING)
-            .validate(&module)
-            .map_err(|e| e.emit_to_string(source))?;
-        Ok(module)
+        zfail_testing::wgsl::validate(source, naga::valid::Capabilities::MULTISAMPLED_SHADING)
     }
 
     #[test]
@@ -169,34 +165,10 @@ mod tests {
         assert!(files > 10);
     }
 
-    /// Size and field offsets of a WGSL struct.
-    fn layout(program: Program, name: &str) -> (u32, Vec<u32>) {
-        let module = validate(program.source).expect("a valid program");
-        module
-            .types
-            .iter()
-            .find_map(|(_, ty)| match &ty.inner {
-                naga::TypeInner::Struct { members, span } if ty.name.as_deref() == Some(name) => {
-                    Some((*span, members.iter().map(|m| m.offset).collect()))
-                }
-                _ => None,
-            })
-            .unwrap_or_else(|| panic!("no struct {name}"))
-    }
-
-    macro_rules! assert_layout {
-        ($program:expr, $wgsl:literal, $rust:ty, [$($field:ident),+]) => {
-            let (size, offsets) = layout($program, $wgsl);
-            assert_eq!(size as usize, size_of::<$rust>(), $wgsl);
-            let rust = [$(std::mem::offset_of!($rust, $field)),+].map(|o| o as u32);
-            assert_eq!(offsets[..rust.len()], rust, $wgsl);
-        };
-    }
-
     #[test]
     fn structures_agree() {
-        let shade = forward(Vertices::Mapped, Some(1));
-        assert_layout!(
+        let shade = &validate(forward(Vertices::Mapped, Some(1)).source).expect("a valid program");
+        layout!(
             shade,
             "Frame",
             FrameUniform,
@@ -219,9 +191,10 @@ mod tests {
                 window_offset,
                 lights
             ]
-        );
-        assert_layout!(shade, "Slot", SlotUniform, [u, v]);
-        assert_layout!(
+        )
+        .expect("agreement");
+        layout!(shade, "Slot", SlotUniform, [u, v]).expect("agreement");
+        layout!(
             shade,
             "Material",
             MaterialUniform,
@@ -242,8 +215,9 @@ mod tests {
                 clearcoat,
                 clearcoat_roughness
             ]
-        );
-        assert_layout!(
+        )
+        .expect("agreement");
+        layout!(
             shade,
             "Light",
             LightRecord,
@@ -262,6 +236,7 @@ mod tests {
                 cot_outer,
                 up
             ]
-        );
+        )
+        .expect("agreement");
     }
 }

@@ -2,11 +2,12 @@
 
 use super::field::AlphaField;
 use super::product;
-use super::tests::{area, image, noise, on_plane, open_edges, random, square, texture};
+use super::tests::{area, image, noise, on_plane, open_edges, square, texture};
 use super::triangle::{Corner, Cut, UNIT, Weights};
 use super::{Limits, cut_masked};
 use crate::{Filter, Scene, Wrap};
 use glam::DVec2;
+use zfail_testing::Random;
 
 /// A square with the alpha of its four corners.
 fn shaded(mut scene: Scene, alphas: [f32; 4]) -> Scene {
@@ -45,18 +46,18 @@ fn the_alpha_of_vertices_cuts_along_straight_lines() {
 
 /// How many of some points in random triangles a cut keeps or leaves out wrongly if alpha is taken to be `turned` around by
 /// so many corners; points near the contour do not count. Also how many were checked.
-fn misjudged(field: &AlphaField<'_>, turned: usize, seed: &mut u64) -> [usize; 2] {
+fn misjudged(field: &AlphaField<'_>, turned: usize, random: &mut Random) -> [usize; 2] {
     const LEVEL: f64 = 90.3;
     let mut counts = [0; 2];
     for _ in 0..40 {
-        let corner = |seed: &mut u64| DVec2::new(random(seed), random(seed)) * 12.0 - 4.0;
-        let mut texels = [corner(seed), corner(seed), corner(seed)];
-        if random(seed) < 0.3 {
+        let corner = |random: &mut Random| DVec2::new(random.unit(), random.unit()) * 12.0 - 4.0;
+        let mut texels = [corner(random), corner(random), corner(random)];
+        if random.unit() < 0.3 {
             // Through nodes and along the borders of cells.
             texels = texels.map(|p| (2.0 * p).round() / 2.0);
         }
-        let alphas = [random(seed), random(seed), random(seed)].map(|x| 1.2 * x);
-        let positions = [0, 1, 2].map(|k| [random(seed) as f32, k as f32, 0.0]);
+        let alphas = [random.unit(), random.unit(), random.unit()].map(|x| 1.2 * x);
+        let positions = [0, 1, 2].map(|k| [random.unit() as f32, k as f32, 0.0]);
         let corners = std::array::from_fn(|k| Corner { position: positions[k], texel: texels[k] });
         let taken = std::array::from_fn(|k| alphas[(k + turned) % 3]);
         let pieces = match product::cut(Some(field), LEVEL, 1.0 / 64.0, corners, taken, 100_000).unwrap() {
@@ -71,7 +72,7 @@ fn misjudged(field: &AlphaField<'_>, turned: usize, seed: &mut u64) -> [usize; 2
         assert!(pieces.iter().all(|&piece| turns(piece) > 0), "a piece is turned over");
         let pieces = on_plane(&pieces, texels);
         for _ in 0..100 {
-            let (mut u, mut v) = (random(seed), random(seed));
+            let (mut u, mut v) = (random.unit(), random.unit());
             if u + v > 1.0 {
                 (u, v) = (1.0 - u, 1.0 - v);
             }
@@ -104,13 +105,13 @@ fn misjudged(field: &AlphaField<'_>, turned: usize, seed: &mut u64) -> [usize; 2
 
 #[test]
 fn products_are_cut_where_they_say() {
-    let mut seed = 21;
+    let mut random = Random(21);
     for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp] {
-        let image = noise([7, 5], &mut seed);
+        let image = noise([7, 5], &mut random);
         let field = AlphaField::new(&image, &texture([wrap; 2], Filter::Linear), 0);
-        let [wrong, checked] = misjudged(&field, 0, &mut seed);
+        let [wrong, checked] = misjudged(&field, 0, &mut random);
         assert!(wrong == 0 && checked > 1500, "{wrap:?}: {wrong} of {checked}");
-        let [wrong, checked] = misjudged(&field, 1, &mut seed);
+        let [wrong, checked] = misjudged(&field, 1, &mut random);
         assert!(wrong * 20 > checked, "{wrap:?}: other corners are caught: {wrong} of {checked}");
     }
 }
@@ -118,10 +119,10 @@ fn products_are_cut_where_they_say() {
 #[test]
 fn triangles_that_were_joined_stay_joined_under_products() {
     let on_diagonal = |p: DVec2| (p.x - p.y).abs() < 1e-6;
-    let mut seed = 22;
+    let mut random = Random(22);
     for seam in [false, true] {
         for textured in [false, true] {
-            let mut scene = shaded(square(noise([16, 16], &mut seed), 1.5, seam), [0.9, 0.3, 1.0, 0.7]);
+            let mut scene = shaded(square(noise([16, 16], &mut random), 1.5, seam), [0.9, 0.3, 1.0, 0.7]);
             if !textured {
                 scene.meshes[0].colors.iter_mut().for_each(|color| color[3] = 1.2 * (color[3] - 0.35));
                 scene.materials[0].base_color_texture = None;
@@ -138,9 +139,9 @@ fn triangles_that_were_joined_stay_joined_under_products() {
 
 #[test]
 fn products_with_detail_without_end_are_thinned_out() {
-    let mut seed = 23;
+    let mut random = Random(23);
     let limits = Limits { triangles: 20_000, ..Limits::default() };
-    let mut scene = shaded(square(noise([300, 300], &mut seed), 1.0, false), [1.0, 0.8, 0.9, 0.7]);
+    let mut scene = shaded(square(noise([300, 300], &mut random), 1.0, false), [1.0, 0.8, 0.9, 0.7]);
     let cuts = cut_masked(&mut scene, 1.0, limits);
     assert!(cuts[0].tolerance > 2.0 && scene.notices.len() == 1, "{:?}", scene.notices);
     assert!(scene.meshes[0].triangles.len() <= 10_128);

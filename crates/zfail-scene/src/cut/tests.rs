@@ -10,14 +10,7 @@ use super::{Limits, Source, cut_masked, derive};
 use crate::{AlphaMode, Filter, Image, Instance, Material, Mesh, Primitive, Scene, Texture, TextureRef, Wrap};
 use glam::{DAffine3, DVec2, DVec3};
 use rustc_hash::FxHashMap;
-
-/// A number in 0..1 that only looks random.
-pub(super) fn random(seed: &mut u64) -> f64 {
-    *seed = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let mut z = (*seed ^ *seed >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((z ^ z >> 31) >> 11) as f64 / (1_u64 << 53) as f64
-}
+use zfail_testing::Random;
 
 pub(super) fn image([width, height]: [u32; 2], mut alpha: impl FnMut(f64, f64) -> f64) -> Image {
     let texels = (0..height).flat_map(|y| (0..width).map(move |x| (f64::from(x) + 0.5, f64::from(y) + 0.5)));
@@ -38,8 +31,8 @@ fn disc() -> Image {
     image([64, 64], |x, y| 127.5 + 64.0 * (RADIUS - (x - 32.0).hypot(y - 32.0)))
 }
 
-pub(super) fn noise(size: [u32; 2], seed: &mut u64) -> Image {
-    image(size, |_, _| 256.0 * random(seed))
+pub(super) fn noise(size: [u32; 2], random: &mut Random) -> Image {
+    image(size, |_, _| 256.0 * random.unit())
 }
 
 fn length_to(point: DVec2, [a, b]: [DVec2; 2]) -> f64 {
@@ -85,8 +78,8 @@ fn a_disc_is_round_to_within_the_tolerance() {
 
 #[test]
 fn polygons_are_near_the_curve_and_the_curve_near_the_polygons() {
-    let mut seed = 1;
-    let image = noise([24, 24], &mut seed);
+    let mut random = Random(1);
+    let image = noise([24, 24], &mut random);
     let texture = texture(REPEAT, Filter::Linear);
     let field = AlphaField::new(&image, &texture, 0);
     let segments = |tolerance| Outline::new(field.clone(), 140.0, tolerance, 100_000).unwrap().segments().to_vec();
@@ -101,7 +94,7 @@ fn polygons_are_near_the_curve_and_the_curve_near_the_polygons() {
 /// Contours of pixels that are there or not meet in points half-way between them, at the height of many a middle.
 #[test]
 fn contours_that_touch_have_sides() {
-    let mut seed = 4;
+    let mut random = Random(4);
     let texture = texture(REPEAT, Filter::Linear);
     let wrong_at = |image: &Image, level: f64| {
         let field = AlphaField::new(image, &texture, 0);
@@ -112,7 +105,7 @@ fn contours_that_touch_have_sides() {
         (0..128 * 128).map(at).filter(|&p| is_clear(p) && wrong(p)).count()
     };
     for _ in 0..20 {
-        let dither = image([16, 16], |_, _| if random(&mut seed) < 0.5 { 0.0 } else { 255.0 });
+        let dither = image([16, 16], |_, _| if random.unit() < 0.5 { 0.0 } else { 255.0 });
         assert_eq!(wrong_at(&dither, 127.5), 0);
         assert!(wrong_at(&dither, 160.0) > 0, "another level is caught");
     }
@@ -137,9 +130,9 @@ fn crossings(segments: &[[DVec2; 2]], period: f64) -> usize {
 
 #[test]
 fn no_contours_cross_and_none_is_lost() {
-    let mut seed = 2;
+    let mut random = Random(2);
     for (filter, level) in [(Filter::Linear, 100.0), (Filter::Linear, 128.0), (Filter::Nearest, 128.0)] {
-        let image = noise([16, 16], &mut seed);
+        let image = noise([16, 16], &mut random);
         let texture = texture(REPEAT, filter);
         let field = AlphaField::new(&image, &texture, 0);
         let rings = trace(&field, generic(level), 0.1, 100_000).unwrap();
@@ -171,18 +164,18 @@ pub(super) fn on_plane(pieces: &[[Weights; 3]], texels: [DVec2; 3]) -> Vec<[DVec
 
 /// How many of some points in random triangles a cut along `drawn` keeps or leaves out wrongly by `expected`; points
 /// within a few hundredths of a texel of the contour do not count. Also how many were checked.
-fn misjudged(drawn: (&AlphaField<'_>, f64), expected: (&AlphaField<'_>, f64), seed: &mut u64) -> [usize; 2] {
+fn misjudged(drawn: (&AlphaField<'_>, f64), expected: (&AlphaField<'_>, f64), random: &mut Random) -> [usize; 2] {
     let outline = Outline::new(drawn.0.clone(), drawn.1, 1.0 / 64.0, 1_000_000).unwrap();
     let (field, level) = (expected.0, generic(expected.1));
     let mut counts = [0; 2];
     for _ in 0..20 {
-        let corner = |seed: &mut u64| DVec2::new(random(seed), random(seed)) * 40.0 - 16.0;
-        let mut texels = [corner(seed), corner(seed), corner(seed)];
-        if random(seed) < 0.3 {
+        let corner = |random: &mut Random| DVec2::new(random.unit(), random.unit()) * 40.0 - 16.0;
+        let mut texels = [corner(random), corner(random), corner(random)];
+        if random.unit() < 0.3 {
             // Through nodes and along the borders of texels.
             texels = texels.map(|p| (2.0 * p).round() / 2.0);
         }
-        let position = |k: usize| [random(seed) as f32, k as f32, 0.0];
+        let position = |k: usize| [random.unit() as f32, k as f32, 0.0];
         let positions = [0, 1, 2].map(position);
         let corners = std::array::from_fn(|k| Corner { position: positions[k], texel: texels[k] });
         let pieces = match cut(&outline, corners) {
@@ -197,7 +190,7 @@ fn misjudged(drawn: (&AlphaField<'_>, f64), expected: (&AlphaField<'_>, f64), se
         }
         let pieces = on_plane(&pieces, texels);
         for _ in 0..200 {
-            let (mut u, mut v) = (random(seed), random(seed));
+            let (mut u, mut v) = (random.unit(), random.unit());
             if u + v > 1.0 {
                 (u, v) = (1.0 - u, 1.0 - v);
             }
@@ -221,19 +214,19 @@ fn misjudged(drawn: (&AlphaField<'_>, f64), expected: (&AlphaField<'_>, f64), se
 
 #[test]
 fn every_wrapping_and_filter_is_cut_where_alpha_says() {
-    let mut seed = 3;
+    let mut random = Random(3);
     let wraps = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
     for (i, &u) in wraps.iter().enumerate() {
         for &v in &wraps {
             for filter in [Filter::Linear, Filter::Nearest] {
-                let image = noise([7, 5], &mut seed);
+                let image = noise([7, 5], &mut random);
                 let field = |wrap_u, level: f64| (AlphaField::new(&image, &texture([wrap_u, v], filter), 0), level);
                 let (truth, other, level) = (field(u, 128.0), field(wraps[(i + 1) % 3], 128.0), 90.0);
-                let [wrong, checked] = misjudged((&truth.0, 128.0), (&truth.0, 128.0), &mut seed);
+                let [wrong, checked] = misjudged((&truth.0, 128.0), (&truth.0, 128.0), &mut random);
                 assert!(wrong == 0 && checked > 1500, "{u:?} {v:?} {filter:?}: {wrong} of {checked}");
-                let [wrong, checked] = misjudged((&truth.0, 128.0), (&other.0, 128.0), &mut seed);
+                let [wrong, checked] = misjudged((&truth.0, 128.0), (&other.0, 128.0), &mut random);
                 assert!(wrong * 20 > checked, "{u:?} {v:?} {filter:?}: another wrapping is caught");
-                let [wrong, checked] = misjudged((&truth.0, level), (&truth.0, 128.0), &mut seed);
+                let [wrong, checked] = misjudged((&truth.0, level), (&truth.0, 128.0), &mut random);
                 assert!(wrong * 50 > checked, "{u:?} {v:?} {filter:?}: another cutoff is caught");
             }
         }
@@ -388,10 +381,10 @@ fn meshes_beyond_the_limits_are_cut_coarsely_or_not_at_all() {
 /// Noise, dither and a board of single pixels take as long as one likes unless they are counted first.
 #[test]
 fn detail_without_end_is_thinned_out() {
-    let mut seed = 11;
+    let mut random = Random(11);
     let limits = Limits { triangles: 20_000, growth: 64, points: 40_000, ..Limits::default() };
     let board = image([256, 200], |x, y| if (x + y).rem_euclid(2.0) < 1.0 { 255.0 } else { 0.0 });
-    for (image, tiles) in [(noise([301, 257], &mut seed), 1.0), (noise([64, 64], &mut seed), 30.0), (board, 1.0)] {
+    for (image, tiles) in [(noise([301, 257], &mut random), 1.0), (noise([64, 64], &mut random), 30.0), (board, 1.0)] {
         let mut scene = square(image, tiles, false);
         let cuts = cut_masked(&mut scene, 1.0, limits);
         assert!(scene.meshes[0].triangles.len() <= 10_128);
@@ -422,7 +415,7 @@ fn edges_of_thinned_masks_are_near_true_ones() {
 /// As much stays there as was, where an average would be all or nothing.
 #[test]
 fn thinned_masks_keep_their_share() {
-    let mut seed = 12;
+    let mut random = Random(12);
     let texture = texture(REPEAT, Filter::Nearest);
     let share = |image: &Image, halvings: u32| {
         let field = AlphaField::new(image, &texture, halvings);
@@ -431,7 +424,7 @@ fn thinned_masks_keep_their_share() {
         ([w, h], there as f64 / (w * h) as f64)
     };
     let board = image([128, 128], |x, y| if (x + y).rem_euclid(2.0) < 1.0 { 255.0 } else { 0.0 });
-    let odd = noise([401, 203], &mut seed);
+    let odd = noise([401, 203], &mut random);
     assert_eq!((share(&odd, 2).0, share(&odd, 30).0), ([100, 50], [1, 1]));
     for (image, expected) in [(&board, 0.5), (&odd, 156.0 / 256.0)] {
         for halvings in 0..3 {

@@ -88,11 +88,9 @@ mod tests {
 
     #[test]
     fn both_ways_are_measured() {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-        let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
-        let Some(adapter) = zfail_testing::Need::Gpu.found(adapter) else { return };
-        let (device, queue) =
-            pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default())).expect("device");
+        let found = zfail_testing::device(|_| wgpu::DeviceDescriptor::default());
+        let Some(raw) = zfail_testing::gpu(found) else { return };
+        let (device, queue) = (raw.device, raw.queue);
         let start = Instant::now();
         let model = measure(&device, &queue, CostModel::RASTERISE).expect("times");
         println!("{model:?}, found in {:?}", start.elapsed());

@@ -9,18 +9,15 @@ use wgpu::{BufferDescriptor, MapMode, PollType};
 use zfail_plan::casting;
 use zfail_plan::topology::{NONE, Topology};
 use zfail_plan::volume::{self, Volume};
-use zfail_testing::Need;
+use zfail_testing::Random;
 
 /// Triangles of the three lists, in ascending order.
 type Triangles = [Vec<[u32; 3]>; 3];
 
 fn device() -> Option<(Device, Queue)> {
-    let descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    let instance = wgpu::Instance::new(descriptor);
-    let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
-    let adapter = Need::Gpu.found(adapter)?;
     // With the least that WebGPU promises.
-    Some(pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default())).expect("device"))
+    let raw = zfail_testing::gpu(zfail_testing::device(|_| wgpu::DeviceDescriptor::default()))?;
+    Some((raw.device, raw.queue))
 }
 
 /// A closed ring around y, with a fin on one of its edges and a sheet beside it.
@@ -45,13 +42,10 @@ fn ring() -> Topology {
 }
 
 /// Triangles over few vertices: edges with many triangles, in all orders.
-fn soup(mut seed: u64) -> Topology {
-    let mut real = || {
-        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (seed >> 33) as f32 / (1_u64 << 31) as f32
-    };
-    let positions: Vec<[f32; 3]> = (0..14).map(|_| [(); 3].map(|()| real() - 0.5)).collect();
-    let triangles: Vec<[u32; 3]> = (0..300).map(|_| [(); 3].map(|()| (14.0 * real()) as u32)).collect();
+fn soup(seed: u64) -> Topology {
+    let mut random = Random(seed);
+    let positions: Vec<[f32; 3]> = (0..14).map(|_| random.vector(0.5).as_vec3().to_array()).collect();
+    let triangles: Vec<[u32; 3]> = (0..300).map(|_| [(); 3].map(|()| random.below(14) as u32)).collect();
     Topology::new(&positions, &triangles, |_| true).expect("mesh")
 }
 
@@ -276,4 +270,17 @@ fn scales_are_powers_of_two() {
     {
         assert_eq!(unit_scale(DVec4::splat(extent).truncate()), expected, "{extent}");
     }
+}
+
+#[test]
+fn parameters_lie_as_their_shader_reads_them() {
+    use zfail_testing::naga::valid::Capabilities;
+    let module = zfail_testing::wgsl::validate(include_str!("extract.wgsl"), Capabilities::empty()).expect("WGSL");
+    let fields = zfail_testing::layout!(
+        &module,
+        "Params",
+        Params,
+        [light, edge_scale, light_scale, first, triangles, edges, fans, apex, steps, starts]
+    );
+    fields.expect("agreement");
 }

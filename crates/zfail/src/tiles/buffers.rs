@@ -217,3 +217,15 @@ fn texture(
     });
     texture.create_view(&TextureViewDescriptor::default())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::GroupRecord;
+    use zfail_testing::{layout, naga::valid::Capabilities, wgsl::validate};
+
+    #[test]
+    fn a_group_lies_as_its_shader_reads_it() {
+        let module = validate(include_str!("count.wgsl"), Capabilities::empty()).expect("WGSL");
+        layout!(&module, "Group", GroupRecord, [first, length, row, base]).expect("agreement");
+    }
+}

@@ -1,19 +1,7 @@
 use super::*;
 use crate::casting;
 use glam::Vec4;
-
-struct Random(u64);
-
-impl Random {
-    fn real(&mut self, lo: f64, hi: f64) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        lo + (hi - lo) * (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn vector(&mut self, extent: f64) -> DVec3 {
-        DVec3::new(self.real(-extent, extent), self.real(-extent, extent), self.real(-extent, extent))
-    }
-}
+use zfail_testing::Random;
 
 /// Square sheets one over the other.
 fn sheets(count: u32) -> Topology {

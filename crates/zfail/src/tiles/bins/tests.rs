@@ -26,11 +26,8 @@ fn bins() -> Bins {
 
 #[test]
 fn every_pixel_centre_inside_finds_its_polygon() {
-    let mut seed = 1_u32;
-    let mut coordinate = |extent: u32| {
-        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        f64::from(seed >> 8) / f64::from(1 << 24) * f64::from(2 * extent) - f64::from(extent) / 2.0
-    };
+    let mut random = zfail_testing::Random(1);
+    let mut coordinate = |extent: u32| random.real(-0.5, 1.5) * f64::from(extent);
     let triangles: Vec<[DVec2; 3]> =
         (0..200).map(|_| [0; 3].map(|_| DVec2::new(coordinate(SIZE[0]), coordinate(SIZE[1])))).collect();
     let mut bins = bins();

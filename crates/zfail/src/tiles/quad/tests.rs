@@ -2,21 +2,10 @@ use super::super::bins::{Bins, TILE};
 use super::*;
 use glam::DMat3;
 use zfail_plan::view::{Projection, View};
+use zfail_testing::Random;
 
 const SIZE: [u32; 2] = [320, 200];
 const NEAR: f64 = 0.1;
-
-struct Random(u32);
-
-impl Random {
-    fn vector(&mut self, extent: f64) -> DVec3 {
-        let mut real = || {
-            self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (f64::from(self.0 >> 8) / f64::from(1 << 23) - 1.0) * extent
-        };
-        DVec3::new(real(), real(), real())
-    }
-}
 
 fn view() -> View {
     let projection = Projection::Perspective { yfov: 1.2, near: NEAR, far: None };

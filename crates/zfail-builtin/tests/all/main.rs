@@ -1,0 +1,3 @@
+//! The built-in scenes as a user sees them.
+
+mod framing;

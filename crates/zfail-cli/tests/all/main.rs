@@ -1,0 +1,16 @@
+//! The program from outside: what it prints, what it writes, how it ends.
+
+mod assets;
+mod bench;
+mod compare;
+mod compare_page;
+mod documents;
+mod frames;
+mod guide;
+mod info;
+mod overlays;
+mod render;
+mod support;
+mod usage;
+mod verify;
+mod view;

@@ -1,0 +1,5 @@
+//! Methods of the books side by side.
+
+mod claims;
+mod images;
+mod support;

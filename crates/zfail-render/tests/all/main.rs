@@ -1,0 +1,13 @@
+//! Pictures, read back and compared with what radiometry says.
+
+mod blended;
+mod edited;
+mod frame;
+mod ground;
+mod layers;
+mod light;
+mod shape;
+mod sky;
+mod support;
+mod terminator;
+mod textures;
