@@ -67,6 +67,9 @@ const CHECKS: [Check; 8] = [
     },
 ];
 
+/// The commit with which the interface of the published crates is compared.
+const LAST_RELEASE: Option<&str> = None;
+
 /// The check that [`tests`] runs.
 const TESTS: &str = "tests";
 
@@ -102,6 +105,23 @@ pub fn run(browser: Result<(), String>) -> Result<(), String> {
         let start = Instant::now();
         let outcome = check().inspect_err(|why| println!("{why}"));
         note(name, if outcome.is_ok() { Outcome::Passed } else { Outcome::Failed }, start);
+    }
+
+    let start = Instant::now();
+    if has_component("deny") {
+        println!("\n+ cargo deny check");
+        let outcome = if passes(cargo().args(["deny", "check"]))? { Outcome::Passed } else { Outcome::Failed };
+        note("licences, advisories", outcome, start);
+    } else {
+        println!("\ncargo deny is not installed: licences and advisories are not checked");
+    }
+    match LAST_RELEASE {
+        None => println!("Nothing has been released yet, so no interface can have been broken"),
+        Some(commit) if has_component("semver-checks") => {
+            let broken = !passes(cargo().args(["semver-checks", "--baseline-rev", commit]))?;
+            note("interface", if broken { Outcome::Failed } else { Outcome::Passed }, start);
+        }
+        Some(commit) => println!("cargo semver-checks is not installed: nothing is compared with {commit}"),
     }
 
     println!("\nSummary");
