@@ -3,7 +3,7 @@
 //! In: bytes that libFuzzer makes up. Out: a crash where loading panics, takes more memory than its limits allow, or
 //! returns a scene that breaks the rules of its types; hangs are libFuzzer's to find (`-timeout`). What a target does
 //! with its bytes is in `crates/zfail-files/tests/corpus/loading.rs`, where an ordinary test replays seeds and findings.
-//! Planning crashes where its search goes beyond its budget or counts wrap; see `crates/zfail-plan/tests/deep`.
+//! Planning crashes where its search goes beyond its budget or counts wrap; see `crates/zfail-plan/tests/all/deep`.
 
 #[path = "../../crates/zfail-files/tests/corpus/loading.rs"]
 pub mod loading;

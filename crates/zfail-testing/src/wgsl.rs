@@ -36,6 +36,14 @@ pub fn compare_layout(
     }
 }
 
+/// Fields of a Rust type with their offsets: `fields!(Type, [first, second])`.
+#[macro_export]
+macro_rules! fields {
+    ($rust:ty, [$($field:ident),+]) => {
+        [$((stringify!($field), ::std::mem::offset_of!($rust, $field))),+]
+    };
+}
+
 /// Whether a WGSL struct of a module agrees with a Rust type: `layout!(module, "Name", Type, [first, second])`.
 #[macro_export]
 macro_rules! layout {
@@ -44,7 +52,7 @@ macro_rules! layout {
             $module,
             $name,
             ::std::mem::size_of::<$rust>(),
-            &[$((stringify!($field), ::std::mem::offset_of!($rust, $field))),+],
+            &$crate::fields!($rust, [$($field),+]),
         )
     };
 }

@@ -120,7 +120,7 @@ impl Program {
 mod tests {
     use super::*;
     use crate::scene::gpu_data::{FrameUniform, LightRecord, MaterialUniform, SlotUniform};
-    use zfail_testing::{layout, naga};
+    use zfail_testing::{fields, layout, naga};
 
     fn programs() -> Vec<Program> {
         [
@@ -194,9 +194,7 @@ mod tests {
         )
         .expect("agreement");
         layout!(shade, "Slot", SlotUniform, [u, v]).expect("agreement");
-        layout!(
-            shade,
-            "Material",
+        let mut material = fields!(
             MaterialUniform,
             [
                 base_color,
@@ -216,7 +214,23 @@ mod tests {
                 clearcoat_roughness
             ]
         )
-        .expect("agreement");
+        .to_vec();
+        // One by one in WGSL.
+        let slots = [
+            "base_color_slot",
+            "metallic_roughness_slot",
+            "normal_slot",
+            "occlusion_slot",
+            "emissive_slot",
+            "specular_color_slot",
+            "clearcoat_slot",
+            "sheen_slot",
+            "transmission_slot",
+        ];
+        let first = std::mem::offset_of!(MaterialUniform, slots);
+        material.extend(slots.iter().enumerate().map(|(i, &name)| (name, first + i * size_of::<SlotUniform>())));
+        zfail_testing::wgsl::compare_layout(shade, "Material", size_of::<MaterialUniform>(), &material)
+            .expect("agreement");
         layout!(
             shade,
             "Light",
