@@ -35,7 +35,8 @@ fn missing(runs: impl Fn(&str) -> bool) -> Vec<&'static str> {
     PROGRAMS.iter().filter(|(program, _)| !runs(program)).map(|(_, package)| *package).collect()
 }
 
-fn runs(program: &str) -> bool {
+/// Whether a program is there.
+pub fn runs(program: &str) -> bool {
     let probe = Command::new(program).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
     probe.is_ok_and(|status| status.success())
 }

@@ -1,6 +1,6 @@
 //! Every check of the workspace, one after the other, with a summary at the end.
 
-use crate::{cargo, fuzz, packages, wasm};
+use crate::{browser, cargo, fuzz, packages, wasm};
 use std::env;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -81,14 +81,14 @@ enum Outcome {
     Skipped(&'static str),
 }
 
-/// Runs all checks; `browser` says whether pages can be tested, or why not.
+/// Runs all checks; `pages` says whether pages can be tested, or why not.
 ///
 /// # Errors
 /// If one of them fails, or is skipped where `CI` or `ZFAIL_CI` is set.
-pub fn run(browser: Result<(), String>) -> Result<(), String> {
+pub fn run(pages: Result<(), String>) -> Result<(), String> {
     let strict = ["CI", "ZFAIL_CI"].iter().any(|name| env::var_os(name).is_some_and(|value| !value.is_empty()));
     // Not every system packages one: Ubuntu has chromium as a snap alone.
-    let without_browser = match browser {
+    let without_browser = match pages {
         Err(reason) if strict => return Err(reason),
         Err(reason) => {
             println!("Tests of pages are skipped: {reason}");
@@ -105,7 +105,7 @@ pub fn run(browser: Result<(), String>) -> Result<(), String> {
     }
     // What a bare machine may lack and cannot always get is told, and fails nothing.
     let start = Instant::now();
-    if has_program("c++") {
+    if browser::runs("c++") {
         note(FUZZ.name, FUZZ.run()?, start);
     } else {
         println!("\nThere is no C++ compiler: the fuzz targets are not checked");
@@ -206,11 +206,6 @@ fn outcome(result: Result<(), String>) -> Outcome {
             Outcome::Failed
         }
     }
-}
-
-fn has_program(name: &str) -> bool {
-    let probe = Command::new(name).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
-    probe.is_ok_and(|status| status.success())
 }
 
 fn passes(command: &mut Command) -> Result<bool, String> {

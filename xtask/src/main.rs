@@ -86,6 +86,16 @@ fn cargo() -> Command {
     command
 }
 
+/// Says what it runs, and runs it.
+fn succeeds(command: &mut Command) -> Result<(), String> {
+    println!("+ {command:?}");
+    match command.status() {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => Err(format!("{command:?} failed ({status})")),
+        Err(e) => Err(format!("cannot start {command:?}: {e}")),
+    }
+}
+
 fn root() -> PathBuf {
     let manifest = Path::new(env!("CARGO_MANIFEST_DIR"));
     manifest.parent().unwrap_or(manifest).to_owned()

@@ -3,7 +3,7 @@
 //! In: the workspace. Out: `target/package`, and whether what is in it builds without the rest of the repository. What reaches
 //! for a file beside its package does not.
 
-use crate::{cargo, root};
+use crate::{cargo, root, succeeds};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -70,15 +70,6 @@ fn scratch_manifest(version: &str, workspace: &str) -> String {
 
 fn target() -> PathBuf {
     root().join("target")
-}
-
-fn succeeds(command: &mut Command) -> Result<(), String> {
-    println!("+ {command:?}");
-    match command.status() {
-        Ok(status) if status.success() => Ok(()),
-        Ok(status) => Err(format!("{command:?} failed ({status})")),
-        Err(e) => Err(format!("cannot start {command:?}: {e}")),
-    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Whether the library builds for browsers.
 
-use crate::cargo;
+use crate::{cargo, succeeds};
 use std::process::Command;
 
 /// What the compiler calls a browser.
@@ -24,13 +24,7 @@ pub fn run() -> Result<(), String> {
     if !is_possible() {
         return Err(format!("the target {TARGET} is missing; 'rustup target add {TARGET}' installs it"));
     }
-    let arguments = ["check", "--target", TARGET, "--package", "zfail", "--package", "zfail-plan"];
-    println!("+ cargo {}", arguments.join(" "));
-    match cargo().args(arguments).status() {
-        Ok(status) if status.success() => Ok(()),
-        Ok(status) => Err(format!("zfail does not build for {TARGET} ({status})")),
-        Err(e) => Err(format!("cannot start cargo: {e}")),
-    }
+    succeeds(cargo().args(["check", "--target", TARGET, "--package", "zfail", "--package", "zfail-plan"]))
 }
 
 /// Whether the compiler has the target's standard library.

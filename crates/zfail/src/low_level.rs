@@ -18,7 +18,7 @@ pub fn plan<'a>(prepared: &Prepared<'a>) -> &'a FramePlan {
 
 /// Changes what the prepared frame draws: for figures of what goes wrong without a step, and for tests that see whether anyone
 /// would notice. Ranges of indices, scissors, z-pass and clear values may be changed, and draws emptied; indices, lights and
-/// transforms are on the device already.
+/// transforms are on the device already, and so are the lists of the tile pass.
 pub fn edit_plan(shadows: &mut Shadows, edit: impl FnOnce(&mut FramePlan)) {
     edit(shadows.planner.last_mut());
 }

@@ -1,7 +1,6 @@
 //! Verdicts as a texture say what the stencil says, light by light, and a host's own matrices give the same.
 
 use crate::stage::{self, Setup, Soup};
-use wgpu::util::DeviceExt;
 use zfail::glam::{DAffine3, DVec3, Mat4, Vec3};
 use zfail::{Caster, Error, Frame, LightKind, MeshDescriptor, Projection, ShadowLight, Shadows, VerdictBits, View};
 use zfail::{Target, wgpu};
@@ -88,9 +87,8 @@ fn draw(own_matrices: bool) -> Drawn {
         })
         .collect();
     queue.submit([encoder.finish()]);
-    let looked_up = (0..lights.len()).map(|light| {
-        look_up(&device, &queue, &verdicts[light / VerdictBits::LIGHTS], (light % VerdictBits::LIGHTS) as u32)
-    });
+    let looked_up = (0..lights.len())
+        .map(|light| look_up(&device, &queue, &verdicts[light / VerdictBits::LIGHTS], light % VerdictBits::LIGHTS));
     let stencils = (0..lights.len()).map(|light| {
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         prepared.draw(&mut stage::begin(&mut encoder, &attachment, wgpu::LoadOp::Load), &pipelines, light);
@@ -101,64 +99,12 @@ fn draw(own_matrices: bool) -> Drawn {
 }
 
 /// Which pixels `zfail_is_lit` calls lit.
-fn look_up(device: &wgpu::Device, queue: &wgpu::Queue, verdicts: &wgpu::Texture, bit: u32) -> Vec<bool> {
-    let source = format!(
-        "{}
-        @group(0) @binding(0) var verdicts: texture_2d<f32>;
-        @group(0) @binding(1) var<storage, read_write> out: array<u32>;
-        @group(0) @binding(2) var<uniform> bit: u32;
-        @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
-            let lit = zfail_is_lit(textureLoad(verdicts, id.xy, 0), bit);
-            out[id.y * {}u + id.x] = u32(lit);
-        }}",
-        VerdictBits::LOOKUP,
-        SIZE[0]
-    );
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: None,
-        source: wgpu::ShaderSource::Wgsl(source.into()),
-    });
-    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: None,
-        layout: None,
-        module: &module,
-        entry_point: None,
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
-        cache: None,
-    });
-    let size = u64::from(SIZE[0] * SIZE[1]) * 4;
-    let buffer =
-        |usage| device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false });
-    let out = buffer(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
-    let read = buffer(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
-    let bit = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: None,
-        contents: &bit.to_le_bytes(),
-        usage: wgpu::BufferUsages::UNIFORM,
-    });
-    let texels = verdicts.create_view(&wgpu::TextureViewDescriptor::default());
-    let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: None,
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&texels) },
-            wgpu::BindGroupEntry { binding: 1, resource: out.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 2, resource: bit.as_entire_binding() },
-        ],
-    });
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &bindings, &[]);
-        pass.dispatch_workgroups(SIZE[0] / 8, SIZE[1] / 8, 1);
-    }
-    encoder.copy_buffer_to_buffer(&out, 0, &read, 0, size);
-    queue.submit([encoder.finish()]);
-    read.slice(..).map_async(wgpu::MapMode::Read, |result| result.expect("map"));
-    device.poll(wgpu::PollType::wait_indefinitely()).expect("poll");
-    let mapped = read.slice(..).get_mapped_range().expect("mapped");
-    mapped.chunks_exact(4).map(|word| word[0] != 0).collect()
+fn look_up(device: &wgpu::Device, queue: &wgpu::Queue, verdicts: &wgpu::Texture, bit: usize) -> Vec<bool> {
+    let encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let value = format!("u32(zfail_is_lit(textureLoad(image, id.xy, 0), {bit}u))");
+    let image = (verdicts, wgpu::TextureAspect::All);
+    let lit = stage::read(device, queue, encoder, image, "texture_2d<f32>", VerdictBits::LOOKUP, &value);
+    lit.into_iter().map(|word| word != 0).collect()
 }
 
 #[test]

@@ -221,17 +221,35 @@ pub fn draw_depth(
 pub fn read_stencil(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
-    mut encoder: wgpu::CommandEncoder,
+    encoder: wgpu::CommandEncoder,
     texture: &wgpu::Texture,
 ) -> Vec<u8> {
-    let (width, height) = (texture.width(), texture.height());
     let multi = if texture.sample_count() > 1 { "multisampled_" } else { "" };
+    let declared = format!("texture_{multi}2d<u32>");
+    let aspect = wgpu::TextureAspect::StencilOnly;
+    let words = read(device, queue, encoder, (texture, aspect), &declared, "", "textureLoad(image, id.xy, 0).r");
+    words.into_iter().map(|word| word as u8).collect()
+}
+
+/// What a shader makes of every pixel of an aspect of a texture, row by row: `value` is a `u32` made of `image`, of the type
+/// that is `declared`, and `id.xy`, perhaps by functions of a `prelude`.
+pub fn read(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    mut encoder: wgpu::CommandEncoder,
+    (texture, aspect): (&wgpu::Texture, wgpu::TextureAspect),
+    declared: &str,
+    prelude: &str,
+    value: &str,
+) -> Vec<u32> {
+    let (width, height) = (texture.width(), texture.height());
     let source = format!(
-        "@group(0) @binding(0) var stencil: texture_{multi}2d<u32>;
+        "{prelude}
+        @group(0) @binding(0) var image: {declared};
         @group(0) @binding(1) var<storage, read_write> out: array<u32>;
         @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
             if id.x < {width}u && id.y < {height}u {{
-                out[id.y * {width}u + id.x] = textureLoad(stencil, id.xy, 0).r;
+                out[id.y * {width}u + id.x] = {value};
             }}
         }}"
     );
@@ -252,10 +270,7 @@ pub fn read_stencil(
         |usage| device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false });
     let out = buffer(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
     let read = buffer(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
-    let view = texture.create_view(&wgpu::TextureViewDescriptor {
-        aspect: wgpu::TextureAspect::StencilOnly,
-        ..wgpu::TextureViewDescriptor::default()
-    });
+    let view = texture.create_view(&wgpu::TextureViewDescriptor { aspect, ..Default::default() });
     let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
         layout: &pipeline.get_bind_group_layout(0),
@@ -275,5 +290,5 @@ pub fn read_stencil(
     read.slice(..).map_async(wgpu::MapMode::Read, |result| result.expect("map"));
     device.poll(wgpu::PollType::wait_indefinitely()).expect("poll");
     let mapped = read.slice(..).get_mapped_range().expect("mapped");
-    mapped.chunks_exact(4).map(|b| b[0]).collect()
+    bytemuck::pod_collect_to_vec(&mapped)
 }
