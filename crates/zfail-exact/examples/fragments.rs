@@ -66,7 +66,7 @@ fn list(scene: &Scene, view: &View, centre: DVec2, light: usize) -> Result<(), B
         })
         .collect();
     let technique: Technique = env::var("ZFAIL_TECHNIQUE").map_or(Ok(Technique::EverittKilgard), |t| t.parse())?;
-    let lights = [ShadowLight { kind: scene.lights[light].kind, excluded: &[] }];
+    let lights = [ShadowLight::new(scene.lights[light].kind)];
     let (steps, counting) = (technique.steps(), Counting::Raw);
     let frame = Input { view, casters: &casters, lights: &lights, receivers: &[], steps, counting };
     let mut planner = Planner::new();

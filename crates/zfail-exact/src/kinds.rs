@@ -53,11 +53,13 @@ pub enum Kind {
     Planted,
     /// The near plane of an orthographic view cuts casters.
     OrthographicCut,
+    /// One mesh of many parts, near the eye and around it, under a light that ends at a box.
+    District,
 }
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::Closed,
         Self::Open,
         Self::Soup,
@@ -77,6 +79,7 @@ impl Kind {
         Self::Shards,
         Self::Planted,
         Self::OrthographicCut,
+        Self::District,
     ];
 
     /// The scene of this kind that `seed` makes.
@@ -92,7 +95,7 @@ impl Kind {
             size,
         );
         let lights = vec![point(random), point(random)];
-        let mut recipe = Recipe { kind: self, seed, parts: stage(random), lights, view };
+        let mut recipe = Recipe { kind: self, seed, parts: stage(random), lights, half_extents: None, view };
         self.furnish(&mut recipe, random);
         recipe
     }
@@ -192,6 +195,7 @@ impl Kind {
                 let position = DVec3::new(random.between(-2.0, 2.0), -1.0, random.between(-2.0, 2.0));
                 recipe.lights[0] = LightKind::Point { position, range: f64::INFINITY };
             }
+            Self::District => district(recipe, random),
             Self::Shards => {
                 let seed = |random: &mut Random| u64::from(random.below(1 << 20));
                 let count = random.between(40.0, 300.0) as u32;
@@ -300,6 +304,24 @@ fn small_parts(recipe: &mut Recipe, random: &mut Random, shapes: [Shape; 2]) {
         let yfov = 2.0 * (random.between(1.0, 1.8) / distance).atan();
         Projection::Perspective { yfov, near: 10f64.powf(random.between(-2.0, -0.7)), far: None }
     };
+}
+
+/// Puts a mesh of many parts around the eye, so that few of them stand before it, and a box around the first light.
+fn district(recipe: &mut Recipe, random: &mut Random) {
+    let (count, seed) = (random.between(30.0, 120.0) as u32, u64::from(random.below(1 << 20)));
+    let pose = place_upright(DVec3::Y * 1.1, DVec3::new(random.between(2.0, 4.0), 2.0, random.between(2.0, 4.0)));
+    let part = Part::new(Shape::District(count, seed), pose);
+    recipe.parts.push(if random.once_in(3) { part.double() } else { part });
+    let eye = DVec3::new(random.between(-2.5, 2.5), random.between(0.6, 2.4), random.between(-2.5, 2.5));
+    recipe.view.world_from_view = look(eye, random.in_cube(1.0) + DVec3::Y * 0.5);
+    recipe.half_extents = Some(DVec3::splat(0.4) + random.in_cube(3.0).abs());
+    if random.once_in(3) {
+        recipe.lights[0] = spot(random);
+    }
+    if random.once_in(2) {
+        let direction = (random.in_cube(1.0) - DVec3::Y).normalize();
+        recipe.lights[1] = LightKind::Directional { direction };
+    }
 }
 
 /// Moves the eye into the shadow of a caster or into nested solids.

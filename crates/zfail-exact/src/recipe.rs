@@ -19,6 +19,8 @@ pub struct Recipe {
     pub parts: Vec<Part>,
     /// Lights, judged one by one.
     pub lights: Vec<LightKind>,
+    /// Of a box around the first light, turned somehow, beyond which it lights nothing.
+    pub half_extents: Option<DVec3>,
     /// Camera and image.
     pub view: View,
 }
@@ -97,7 +99,11 @@ impl Recipe {
             color: [1.0; 3],
             intensity: 1.0,
             excluded: if i == 0 { excluded.clone() } else { Vec::new() },
-            shape: LightShape::default(),
+            shape: LightShape {
+                half_extents: self.half_extents.filter(|_| i == 0),
+                axes: DMat3::from_rotation_y(0.5) * DMat3::from_rotation_x(0.3),
+                ..LightShape::default()
+            },
         }));
         scene
     }
@@ -118,6 +124,7 @@ impl Recipe {
                 LightKind::Directional { .. } => {}
             }
         }
+        self.half_extents = self.half_extents.map(|half| half * scale);
         let eye = &mut self.view.world_from_view.translation;
         *eye = place(*eye);
         match &mut self.view.projection {

@@ -46,6 +46,8 @@ pub enum Shape {
     Shards(u32, u64),
     /// A closed sphere on which so many triangles stand: an edge of each lies on one of its faces, within rounding.
     Planted(u32, u64),
+    /// So many boxes, spheres, rings and open boxes in one mesh, some of which stand in or touch each other.
+    District(u32, u64),
     /// A sphere with every third triangle removed or reversed.
     Wreck(u32),
     /// A square upon itself, so many times, the windings alternating.
@@ -106,6 +108,7 @@ impl Shape {
             Self::Soup(count, seed) => build.soup(count, seed, 0.5),
             Self::Shards(count, seed) => build.soup(count, seed, 0.12),
             Self::Planted(count, seed) => build.planted(count, seed),
+            Self::District(count, seed) => build.district(count, seed),
             Self::Wreck(n) => {
                 build.sphere(n, n);
                 let mut i = 0;
@@ -285,6 +288,28 @@ impl Builder {
             let top = (foot[0] + foot[1]) * 0.5 + (face[0] + random.in_cube(0.5)) * random.between(0.05, 0.4);
             let corners = [foot[0], foot[1], top].map(|p| self.vertex(p));
             self.triangles.push(corners);
+        }
+    }
+
+    fn district(&mut self, count: u32, seed: u64) {
+        let mut random = Random::new(seed);
+        for _ in 0..count {
+            let mut part = Self::default();
+            match random.below(5) {
+                0 => part.sphere(6, 7),
+                1 => part.cage(),
+                2 => {
+                    part.cuboid(DVec3::ZERO, DVec3::ONE);
+                    part.triangles.truncate(10);
+                }
+                _ => part.cuboid(DVec3::ZERO, DVec3::ONE),
+            }
+            // On a grid, so that some touch at corners.
+            let cell = random.in_cube(4.0).round() * 0.25;
+            let size = if random.once_in(4) { DVec3::splat(0.125) } else { random.in_cube(0.1).abs() + 0.03 };
+            let first = self.positions.len() as u32;
+            self.positions.extend(part.positions.iter().map(|&p| cell * DVec3::new(1.0, 0.5, 1.0) + p * size));
+            self.triangles.extend(part.triangles.iter().map(|t| t.map(|v| v + first)));
         }
     }
 

@@ -3,7 +3,6 @@
 use crate::drawing::{Drawing, Line};
 use crate::model::Model;
 use std::f64::consts::TAU;
-use zfail_plan::bounds::Bounds;
 use zfail_plan::glam::{DVec3, DVec4};
 use zfail_plan::light::LightKind;
 use zfail_plan::view::{Projection, View};
@@ -41,14 +40,12 @@ pub fn outline(drawing: &mut Drawing, model: &Model, view: &View, light: usize, 
             }
         }
     }
-    if let (Some(half), Some(_)) = (lamp.shape.half_extents, lamp.kind.range()) {
-        let center = lamp.kind.homogeneous().truncate();
-        let corners = Bounds { min: -half, max: half }.corners().map(|c| at(center + lamp.axes() * c));
-        box_edges(corners).for_each(|edge| drawing.line(edge, style));
+    if let Some(bounds) = lamp.bounds() {
+        box_edges(bounds.corners().map(at)).for_each(|edge| drawing.line(edge, style));
     }
 }
 
-/// The edges of a box whose corners are ordered as [`Bounds::corners`] does.
+/// The edges of a box whose corners are ordered as [`zfail_plan::bounds::Bounds::corners`] does.
 pub fn box_edges(corners: [DVec4; 8]) -> impl Iterator<Item = [DVec4; 2]> {
     let edges = (0..8_usize).flat_map(|i| [1, 2, 4].map(|bit| (i, i | bit))).filter(|(i, j)| i != j);
     edges.map(move |(i, j)| [corners[i], corners[j]])

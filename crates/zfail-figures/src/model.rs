@@ -12,7 +12,7 @@ use zfail_plan::glam::{DAffine3, DMat4, DVec3, DVec4};
 use zfail_plan::plan::Caster;
 use zfail_plan::topology::{Blocking, Topology};
 use zfail_plan::view::View;
-use zfail_scene::{Ground, Instance, Light, Mesh, Pose, Scene};
+use zfail_scene::{Ground, Instance, Light, Mesh, Pose, Receivers, Scene};
 
 /// A scene without what only pictures need.
 #[derive(Debug)]
@@ -22,6 +22,8 @@ pub struct Model {
     pub lights: Vec<Light>,
     /// Of each light in figures.
     pub hues: Vec<[u8; 3]>,
+    /// Boxes around what can be seen.
+    receivers: Receivers,
     /// Catches shadows beside the instances.
     ground: Option<Ground>,
     /// World space.
@@ -90,6 +92,7 @@ impl Model {
             instances: scene.instances.clone(),
             hues: hues(&scene.lights),
             lights: scene.lights.clone(),
+            receivers: Receivers::new(scene),
             ground: scene.ground,
             anchor: if bounds.is_empty() { DVec3::ZERO } else { bounds.center() },
             casters,
@@ -104,6 +107,7 @@ impl Model {
             if !model.mesh.bends() || bent.positions.len() != model.mesh.positions.len() {
                 return Err(Error::Unfit(format!("a pose does not fit mesh {}", bent.mesh)));
             }
+            self.receivers.bend(bent.mesh, &bent.positions);
             if let Some(topology) = &mut model.topology {
                 let moved = topology.move_vertices(&bent.positions);
                 moved.map_err(|source| Error::Topology { name: model.mesh.name.clone(), source })?;
@@ -180,17 +184,13 @@ impl Model {
         (p.truncate() - self.anchor * p.w).extend(p.w)
     }
 
-    /// A box around all instances, world space.
-    pub fn bounds(&self) -> Bounds {
-        let of_mesh: Vec<Bounds> = self.meshes.iter().map(|model| model.mesh.bounds()).collect();
-        let boxes = self.instances.iter().map(|i| of_mesh[i.mesh].transformed(&i.world_from_object));
-        Bounds::of(boxes.filter(|bounds| !bounds.is_empty()).flat_map(|bounds| [bounds.min, bounds.max]))
-    }
-
     /// Boxes around everything on which `view` shows shadows, world space.
     pub fn receivers(&self, view: &View) -> Vec<Bounds> {
         let ground = self.ground.filter(|ground| ground.faces(view));
-        std::iter::once(self.bounds()).chain(ground.map(|ground| ground.bounds())).collect()
+        let mut boxes = Vec::new();
+        self.receivers.place(&self.instances, &mut boxes);
+        boxes.extend(ground.map(|ground| ground.bounds()));
+        boxes
     }
 
     /// Anchored to clip space of `view`.

@@ -59,7 +59,10 @@ fn plan<'p>(
     let lights: Vec<ShadowLight<'_>> = lights
         .iter()
         .zip(&excluded)
-        .map(|(&l, excluded)| ShadowLight { kind: model.lights[l].kind, excluded })
+        .map(|(&l, excluded)| {
+            let light = &model.lights[l];
+            ShadowLight::new(light.kind).within(light.bounds()).excluding(excluded)
+        })
         .collect();
     let receivers = &model.receivers(view);
     let frame = Input { view, casters: &model.casters(), lights: &lights, receivers, steps, counting };

@@ -11,7 +11,7 @@ use zfail_plan::casting::ObjectLight;
 use zfail_plan::glam::{DVec4, Mat4};
 use zfail_plan::topology::{NONE, Topology, TopologyError};
 use zfail_plan::view::{Projection, View};
-use zfail_scene::{Instance, Light, Material, Scene};
+use zfail_scene::{Instance, Light, Material, Receivers, Scene};
 
 /// What stays from view to view.
 #[derive(Debug)]
@@ -22,6 +22,8 @@ pub struct Geometry {
     pub lights: Vec<Light>,
     /// World space.
     pub bounds: Bounds,
+    /// Boxes around everything that can be seen, world space.
+    pub receivers: Vec<Bounds>,
 }
 
 /// One mesh.
@@ -56,7 +58,10 @@ impl Geometry {
             true => Ok(None),
             false => Mesh::new(device, scene, m).map(Some),
         };
+        let mut receivers = Vec::new();
+        Receivers::new(scene).place(&scene.instances, &mut receivers);
         Ok(Self {
+            receivers,
             meshes: (0..scene.meshes.len()).map(mesh).collect::<Result<_, _>>()?,
             instances: scene.instances.clone(),
             lights: scene.lights.clone(),
@@ -72,6 +77,7 @@ impl Geometry {
             instances: self.instances.clone(),
             lights: self.lights.clone(),
             bounds: self.bounds,
+            receivers: self.receivers.clone(),
         }
     }
 

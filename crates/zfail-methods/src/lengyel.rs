@@ -14,6 +14,7 @@ pub const MEASURES: Steps = Steps {
     off_screen: false,
     near_count: false,
     fan: false,
+    by_section: false,
     receivers: false,
     occluders: 0,
     tiles: Tiles::Never,

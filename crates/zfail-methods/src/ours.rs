@@ -1,6 +1,6 @@
 //! This library: McGuire et al.'s method with what has been found since.
 //!
-//! - *Receivers*: a volume is drawn only in pixels where a surface lies that it can shadow.
+//! - *Sections*: of a mesh of several parts, those that lie together are decided on by themselves.
 //! - *Occluders*: casters in the shadow of others change no verdict, and are left out.
 //! - *Near count*: z-pass also for casters that cover the near rectangle whole, from a number known beforehand; that is
 //!   [`crate::eye_count`] made right, for it asks of the whole rectangle and not of the eye.
@@ -13,7 +13,7 @@ use crate::mcguire;
 use zfail_plan::plan::Steps;
 
 /// The steps that make the method.
-pub const MEASURES: Steps = Steps { receivers: true, occluders: 8, near_count: true, ..mcguire::MEASURES };
+pub const MEASURES: Steps = Steps { by_section: true, occluders: 8, near_count: true, ..mcguire::MEASURES };
 
 #[cfg(test)]
 mod tests {

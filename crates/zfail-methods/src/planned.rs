@@ -40,9 +40,9 @@ pub fn shadow(
 
     let start = Instant::now();
     // Who ignores the light is not among the casters.
-    let lights = &[ShadowLight::new(light.kind)];
-    let receivers = &[geometry.bounds];
-    let prepared = shadows.prepare(&Frame::new(view, &casters, lights).receivers(receivers).steps(steps))?;
+    let lights = &[ShadowLight::new(light.kind).within(light.bounds())];
+    let frame = Frame::new(view, &casters, lights).receivers(&geometry.receivers).steps(steps);
+    let prepared = shadows.prepare(&frame)?;
     let planning_ms = start.elapsed().as_secs_f64() * 1e3;
 
     let placements = stage::placements(&gpu.device, &geometry.placements(view));

@@ -71,7 +71,7 @@ fn plan(c: &mut Criterion) {
             b.iter(|| {
                 time += if moving { 0.01 } else { 0.0 };
                 let kind = LightKind::Point { position: DVec3::new(14.0 + time, 9.0, 14.0), range: f64::INFINITY };
-                let lights = [ShadowLight { kind, excluded: &[] }];
+                let lights = [ShadowLight::new(kind)];
                 let frame = Input {
                     view: &view,
                     casters: &casters,

@@ -12,7 +12,7 @@
 //! operations exchanged instead of their winding.
 
 use crate::casting;
-use crate::topology::{Topology, same_winding};
+use crate::topology::{NodeFacing, Topology, same_winding};
 use glam::DVec4;
 use std::ops::Range;
 
@@ -96,6 +96,17 @@ pub const fn side_len(converging: bool) -> usize {
 /// Appends a side for every silhouette edge of weights `c`, as many as its multiplicity.
 pub fn sides(topology: &Topology, c: &[i8], converging: bool, indices: &mut Vec<u32>) {
     topology.boundary(c, |edge, m| side(edge, m, converging, indices));
+}
+
+/// The same where it is known how the nodes of the topology's tree face the light.
+pub(crate) fn sides_where_facing_turns(
+    topology: &Topology,
+    c: &[i8],
+    states: Option<&[NodeFacing]>,
+    converging: bool,
+    indices: &mut Vec<u32>,
+) {
+    topology.silhouette(c, states, |edge, m| side(edge, m, converging, indices));
 }
 
 /// Appends the sides of one edge of multiplicity `m` ([`Topology::boundary`]).

@@ -18,8 +18,8 @@ fn plan(planner: &mut Planner, casters: &[Caster<'_>], k: u32, moving: bool) {
     let view = View::new(place, projection, [640, 360]);
     let position = DVec3::new(if moving { turn.sin() } else { 0.0 }, 7.0, 0.3);
     let lights = [
-        ShadowLight { kind: LightKind::Point { position, range: 40.0 }, excluded: &[0] },
-        ShadowLight { kind: LightKind::Directional { direction: DVec3::NEG_Y }, excluded: &[] },
+        ShadowLight::new(LightKind::Point { position, range: 40.0 }).excluding(&[0]),
+        ShadowLight::new(LightKind::Directional { direction: DVec3::NEG_Y }),
     ];
     let receivers = [Bounds { min: DVec3::new(-30.0, -2.0, -30.0), max: DVec3::new(30.0, 2.0, 30.0) }];
     let frame = Input {

@@ -19,7 +19,7 @@ pub use device::gpu::{Adapter, Gpu, GpuOptions};
 pub use error::RenderError;
 pub use output::aov::{AovKind, Aovs, UnknownAov};
 pub use output::picture::Picture;
-pub use output::stats::{FrameStats, LightFigures, TriangleFigures};
+pub use output::stats::{FrameStats, LightFigures, SectionFigures, TriangleFigures};
 pub use output::tone_map::displayed;
 pub use renderer::Renderer;
 pub use settings::{Exposure, Settings, Terminator};

@@ -19,7 +19,8 @@ use crate::passes::targets::Targets;
 use crate::passes::verdict_pass::VerdictPass;
 use crate::scene::SceneOnGpu;
 use crate::scene::layouts::Layouts;
-use crate::{Exposure, Gpu, Picture, RenderError, Settings, device::read_back, scene::lights};
+use crate::scene::lights::{FrameLight, kind_name};
+use crate::{Exposure, Gpu, Picture, RenderError, Settings, device::read_back};
 use exposed::Exposed;
 use half::f16;
 use measured::Measured;
@@ -27,9 +28,8 @@ use parts::{Finish, Spans, parts};
 use std::collections::HashMap;
 use std::time::Instant;
 use zfail::{Counting, LightStats};
-use zfail_plan::light::LightKind;
 use zfail_plan::view::View;
-use zfail_scene::{Light, Pose, Scene};
+use zfail_scene::{Pose, Scene};
 
 /// A scene on the device, ready to be rendered from any view.
 #[derive(Debug)]
@@ -215,17 +215,19 @@ impl<'g> Renderer<'g> {
         let precision = exposed.precision(&self.scene, finish);
         let ground = self.scene.surroundings.ground(view).map(|visible| *visible.ground).filter(|_| settings.shadows);
         // Where hardly any light is, the ground shows the shadow of even the faintest.
-        let kind = |light: &Light| if ground.is_some() { light.kind } else { lights::effective(light, &precision) };
-        let kinds: Vec<LightKind> = chosen.iter().map(|&l| kind(&self.scene.lights[l])).collect();
-        // Positions in `chosen` of the lights that make a difference.
-        let active: Vec<usize> = (0..chosen.len()).filter(|&i| lights::is_visible(&kinds[i], view)).collect();
+        let frame_light = |&l: &usize| match (&self.scene.lights[l], ground) {
+            (light, Some(_)) => FrameLight::new(l, light),
+            (light, None) => FrameLight::effective(l, light, &precision),
+        };
+        let lights: Vec<FrameLight> = chosen.iter().map(frame_light).collect();
+        // Positions in `lights` of those that make a difference.
+        let active: Vec<usize> = (0..lights.len()).filter(|&i| lights[i].is_visible(view)).collect();
 
         let start = Instant::now();
         self.shadowed = settings.shadows;
         let readable = self.targets.as_ref().is_some_and(|targets| targets.depth.is_some());
         let figures = if settings.shadows {
             let ground = ground.map(|ground| ground.bounds());
-            let lights: Vec<_> = chosen.iter().copied().zip(kinds.iter().copied()).collect();
             self.scene.plan(gpu, view, &lights, settings, Counting::Verdict, ground, readable)?
         } else {
             vec![unplanned(view); chosen.len()]
@@ -244,7 +246,7 @@ impl<'g> Renderer<'g> {
         // Several steps would write the same queries.
         self.timer.begin(gpu, if divided { 0 } else { spans.count() });
         for (number, part) in parts.iter().enumerate() {
-            self.step(view, &active, &kinds, &exposed, part, number > 0, finish, spans, settings)?;
+            self.step(view, &active, &lights, &exposed, part, number > 0, finish, spans, settings)?;
         }
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         if finish == Finish::Darkroom {
@@ -264,7 +266,7 @@ impl<'g> Renderer<'g> {
 
         let shading_ms = times.pass_ms(spans.forward());
         let lights = chosen.iter().zip(figures).enumerate().map(|(i, (&l, figures))| {
-            let kind = lights::kind_name(&self.scene.lights[l].kind);
+            let kind = kind_name(&self.scene.lights[l].kind);
             let shadow_ms = spans.light(i).and_then(|span| times.pass_ms(span));
             let prepared = self.scene.shadows.prepared().filter(|_| settings.shadows);
             let tiled = prepared.and_then(|prepared| zfail::low_level::tile_stats(&prepared, i));
@@ -301,6 +303,7 @@ fn figures_of(kind: &'static str, figures: LightStats, shadow_ms: Option<f64>, l
         casters: figures.casters,
         culled: figures.reasons().map(|(reason, count)| (reason.name(), count)).collect(),
         cases: figures.cases,
+        sections: crate::SectionFigures { considered: figures.sections.considered, cases: figures.sections.cases },
         extracted: figures.extracted,
         tiled: 0,
         triangles: crate::TriangleFigures {
@@ -321,8 +324,9 @@ mod tests {
     use super::*;
     use crate::GpuOptions;
     use zfail_plan::glam::{DAffine3, DVec3};
+    use zfail_plan::light::LightKind;
     use zfail_plan::view::Projection;
-    use zfail_scene::{Ground, Instance, LightShape, Material, Mesh, Primitive, Sky};
+    use zfail_scene::{Ground, Instance, Light, LightShape, Material, Mesh, Primitive, Sky};
 
     /// A triangle under more than one light, before a background.
     fn scene(unlit: bool) -> Scene {

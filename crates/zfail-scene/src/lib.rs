@@ -22,6 +22,7 @@ mod material;
 mod mesh;
 pub mod placement;
 mod pose;
+mod receivers;
 mod saved_view;
 mod scene;
 mod surroundings;
@@ -37,6 +38,7 @@ pub use material::{
 };
 pub use mesh::{Mesh, Primitive};
 pub use pose::{BentMesh, Pose};
+pub use receivers::Receivers;
 pub use saved_view::{SavedView, SavedViewError, Surroundings};
 pub use scene::{Instance, Scene, world_triangle};
 pub use surroundings::{Ground, Sky};

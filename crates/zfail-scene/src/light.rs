@@ -1,6 +1,7 @@
 //! Lights: where they are ([`LightKind`]), their colour, and what they do beyond physics.
 
 use glam::{DMat3, DVec3};
+use zfail_plan::bounds::OrientedBox;
 use zfail_plan::light::LightKind;
 
 /// A light in world space.
@@ -126,6 +127,16 @@ impl Light {
     #[must_use]
     pub fn reaches(&self, point: DVec3) -> bool {
         self.kind.reaches(point) && self.box_excess(point) <= 0.0
+    }
+
+    /// The box that ends what the light reaches, if it has one.
+    #[must_use]
+    pub fn bounds(&self) -> Option<OrientedBox> {
+        let (LightKind::Point { position, .. } | LightKind::Spot { position, .. }) = self.kind else { return None };
+        let half = self.shape.half_extents?;
+        let axes = self.axes();
+        let half_axes = [axes.x_axis * half.x, axes.y_axis * half.y, axes.z_axis * half.z];
+        Some(OrientedBox { center: position, half_axes })
     }
 
     /// How far `point` is outside the light's box along the axis where it is farthest, metres; negative inside, and

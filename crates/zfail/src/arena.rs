@@ -24,17 +24,24 @@ pub(crate) struct Arena {
     /// Positions in use, holes of removed meshes included.
     used: u64,
     next_serial: u64,
+    /// Another number whenever anything in the buffer is elsewhere.
+    layout: u64,
 }
 
 const POSITION: u64 = size_of::<[f32; 3]>() as u64;
 
 impl Arena {
     pub fn new(device: &Device) -> Self {
-        Self { slots: Vec::new(), buffer: buffer(device, 1024), used: 0, next_serial: 1 }
+        Self { slots: Vec::new(), buffer: buffer(device, 1024), used: 0, next_serial: 1, layout: 0 }
     }
 
     pub fn buffer(&self) -> &Buffer {
         &self.buffer
+    }
+
+    /// Another number whenever a mesh may have moved within the buffer.
+    pub fn layout(&self) -> u64 {
+        self.layout
     }
 
     pub fn get(&self, slot: usize, serial: u64) -> Option<&Mesh> {
@@ -90,6 +97,7 @@ impl Arena {
         }
         self.buffer = buffer(device, (wanted * 2).min(limit / POSITION));
         self.used = 0;
+        self.layout += 1;
         for mesh in self.slots.iter_mut().flatten() {
             mesh.first = self.used as u32;
             upload(queue, &self.buffer, mesh);

@@ -8,7 +8,7 @@ use zfail_plan::plan::{Counting, ShadowLight, Steps, Technique};
 use zfail_plan::view::View;
 
 /// A mesh placed in the world that blocks light.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Caster {
     /// Which mesh.

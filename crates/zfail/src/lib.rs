@@ -148,10 +148,10 @@ pub use prepared::Prepared;
 pub use shadows::Shadows;
 pub use verdict_bits::VerdictBits;
 pub use wgpu;
-pub use zfail_plan::bounds::Bounds;
+pub use zfail_plan::bounds::{Bounds, OrientedBox};
 pub use zfail_plan::light::LightKind;
 pub use zfail_plan::plan::{
-    Counting, Culled, LightStats, PlanError, ShadowLight, Silhouettes, Steps, Technique, Tiles, Triangles,
+    Counting, Culled, LightStats, PlanError, Sections, ShadowLight, Silhouettes, Steps, Technique, Tiles, Triangles,
     UnknownTechnique, ZPass,
 };
 pub use zfail_plan::topology::{Blocking, Topology, TopologyError};

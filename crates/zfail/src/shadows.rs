@@ -178,6 +178,12 @@ impl Shadows {
             counting: frame.counting,
         };
         let plan = self.planner.plan_extracting(&input, &self.extractable)?;
+        // Also of the tile pass, whose choice the same plan leaves as it was.
+        let same =
+            |staged: &Staged| staged.is(frame) && staged.arena == self.arena.layout() && staged.costs == self.costs;
+        if plan.unchanged && self.staged.as_ref().is_some_and(same) {
+            return Ok(());
+        }
         self.first_positions.clear();
         let first = |d: &Draw| {
             let mesh = frame.casters[d.caster as usize].mesh;
@@ -200,7 +206,7 @@ impl Shadows {
         let mut kept = self.staged.take().map(|staged| staged.casters).unwrap_or_default();
         kept.clear();
         kept.extend_from_slice(frame.casters);
-        let staged = Staged::new(frame, kept);
+        let staged = Staged::new(frame, kept, self.arena.layout(), self.costs);
         self.far_plane = frame.view.has_far_plane();
         self.image = scissor::full(frame.view);
         self.tiles_chosen = frame.tile_pass && frame.steps.tiles != Tiles::Never && {

@@ -24,17 +24,27 @@ pub(crate) struct Staged {
     pub counting: Counting,
     /// Bounds of all visible surfaces; empty if they are not known.
     pub visible: Bounds,
+    pub tile_pass: bool,
+    /// [`Arena::layout`].
+    pub arena: u64,
+    pub costs: CostModel,
 }
 
 impl Staged {
     /// `frame`, its casters in memory that is kept.
-    pub fn new(frame: &Frame<'_>, casters: Vec<Caster>) -> Self {
+    pub fn new(frame: &Frame<'_>, casters: Vec<Caster>, arena: u64, costs: CostModel) -> Self {
         let mut visible = Bounds::EMPTY;
         for receivers in frame.receivers.iter().filter(|bounds| !bounds.is_empty()) {
             visible.add(receivers.min);
             visible.add(receivers.max);
         }
-        Self { view: *frame.view, casters, steps: frame.steps, counting: frame.counting, visible }
+        let Frame { steps, counting, tile_pass, .. } = *frame;
+        Self { view: *frame.view, casters, steps, counting, visible, tile_pass, arena, costs }
+    }
+
+    /// Whether `frame` is this one, as far as the planner does not know.
+    pub fn is(&self, frame: &Frame<'_>) -> bool {
+        self.tile_pass == frame.tile_pass && self.casters == frame.casters
     }
 }
 

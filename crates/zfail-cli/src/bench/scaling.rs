@@ -144,7 +144,7 @@ fn plan(
     let mut stats = LightStats::default();
     let mut time = |light: DVec3| {
         let kind = LightKind::Point { position: light, range: f64::INFINITY };
-        let lights = [ShadowLight { kind, excluded: &[] }];
+        let lights = [ShadowLight::new(kind)];
         let frame = Input {
             view: &view,
             casters: &casters,

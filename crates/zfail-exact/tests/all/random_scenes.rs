@@ -1,6 +1,6 @@
 //! Random scenes of every kind: no pixel may be wrong.
 //!
-//! Techniques and sizes take turns. `ZFAIL_SCENES` sets how many scenes in total (default 95, five of each kind, so that
+//! Techniques and sizes take turns. `ZFAIL_SCENES` sets how many scenes in total (default 100, five of each kind, so that
 //! each kind meets every technique), `ZFAIL_SEED` the first seed (default 1), `ZFAIL_KIND` limits them to one kind,
 //! `ZFAIL_SIZE=WxH` sets the size of the images, some of which are odd otherwise.
 
@@ -30,7 +30,7 @@ fn no_pixel_is_wrong() {
     let Some(gpu) = crate::gpu() else { return };
     let only: String = setting("ZFAIL_KIND", String::new());
     let kinds: Vec<Kind> = Kind::ALL.into_iter().filter(|k| only.is_empty() || format!("{k:?}") == only).collect();
-    let scenes: u64 = setting("ZFAIL_SCENES", 95);
+    let scenes: u64 = setting("ZFAIL_SCENES", 100);
     let first: u64 = setting("ZFAIL_SEED", 1);
     let each = scenes.div_ceil(kinds.len() as u64);
     let (mut masks, mut counts) = (Tally::default(), Tally::default());

@@ -4,8 +4,8 @@
 
 use super::Counting;
 use super::meridians::{self, Crossings, Lines};
-use super::pair::{Pair, Role};
-use super::placed::Placed;
+use super::pair::Pair;
+use super::placed::{Placed, Source};
 use super::spread::spread;
 use super::stage::Stage;
 use crate::bounds::Bounds;
@@ -23,7 +23,7 @@ const WORK: u64 = 1 << 25;
 #[derive(Debug, Default)]
 pub(super) struct Batching {
     /// What the division was made for.
-    key: Vec<(u32, u64, DAffine3)>,
+    key: Vec<(u32, Source, DAffine3)>,
     light: Option<LightKind>,
     /// Orthographic views change weights, and with them the pairs' batches.
     orthographic: bool,
@@ -47,7 +47,7 @@ impl Batching {
     /// Sets the batches of `pairs`, all of light `l`, one per caster. Builds their sides. Returns what it looked at.
     pub fn divide(&mut self, stage: &Stage<'_>, l: usize, pairs: &mut [Pair]) -> u64 {
         let placed = stage.placed;
-        let active = |pair: &Pair| pair.role != Role::Idle;
+        let active = Pair::is_active;
         let casting: usize = pairs.iter().filter(|p| active(p)).map(|p| p.casting()).sum();
         if stage.input.counting == Counting::Raw || casting <= SINGLE {
             pairs.iter_mut().for_each(Pair::unite);
@@ -58,7 +58,7 @@ impl Batching {
         let orthographic = matches!(stage.view().projection, Projection::Orthographic { .. });
         let key = || {
             let active = pairs.iter().zip(placed).enumerate().filter(|(_, (pair, _))| active(pair));
-            active.map(|(c, (_, placed))| (c as u32, placed.mesh, placed.world_from_object))
+            active.map(|(c, (_, placed))| (c as u32, placed.source, placed.world_from_object))
         };
         // Pairs forget their batches with the weights they belong to.
         let kept = !self.divided || pairs.iter().filter(|p| active(p)).all(|pair| !pair.batch_of.is_empty());
@@ -133,7 +133,7 @@ fn bodies_within(
     work: &mut Work,
 ) -> bool {
     let (light, eye) = (kind.homogeneous(), stage.view().eye());
-    let active = || pairs.iter().zip(stage.placed).enumerate().filter(|(_, (pair, _))| pair.role != Role::Idle);
+    let active = || pairs.iter().zip(stage.placed).enumerate().filter(|(_, (pair, _))| pair.is_active());
     if active().nth(1).is_none() {
         return false;
     }
@@ -152,7 +152,7 @@ fn bodies_within(
 /// How directions from a light to the casters that draw anything are told apart.
 fn directions(light: DVec4, pairs: &[Pair], placed: &[Placed]) -> stack::Chart {
     let mut bounds = Bounds::EMPTY;
-    let active = pairs.iter().zip(placed).filter(|(pair, caster)| pair.role != Role::Idle && !caster.bounds.is_empty());
+    let active = pairs.iter().zip(placed).filter(|(pair, caster)| pair.is_active() && !caster.bounds.is_empty());
     for (_, caster) in active {
         let world = caster.bounds.transformed(&caster.world_from_object);
         bounds.add(world.min);

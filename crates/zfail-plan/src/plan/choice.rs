@@ -23,6 +23,13 @@ pub(super) struct Choice {
 }
 
 impl Choice {
+    /// Takes what is the same for all lights of a frame.
+    pub fn begin(&mut self, stage: &Stage<'_>) {
+        if self.bounds_receivers(stage) {
+            self.receivers.fit(stage.input.receivers);
+        }
+    }
+
     /// Gives the pairs of light `l` their roles.
     pub fn choose(
         &mut self,
@@ -33,34 +40,31 @@ impl Choice {
     ) -> Result<(), PlanError> {
         let view = stage.view();
         if stage.steps.reach {
-            self.reach.set(&stage.light(l).kind, view.eye());
+            self.reach.set(stage.light(l), view.eye());
         } else {
             self.reach.clear();
         }
         plan.begin(self.reach.scissor(view));
         if self.bounds_receivers(stage) {
-            self.receivers.set(stage.input.receivers, view, &self.reach);
+            self.receivers.set(view, &self.reach);
         }
         let relative = stage.relative_light(l);
         for (c, pair) in pairs.iter_mut().enumerate() {
-            plan.stats.casters += 1;
-            (pair.role, pair.start) = (Role::Idle, NearCount::default());
-            match self.pixels(stage, l, c, relative, plan.scissor) {
+            pair.start = NearCount::default();
+            pair.role = match self.pixels(stage, l, c, relative, plan.scissor) {
                 Ok(within) => {
                     let caster = &stage.placed[c];
-                    pair.aim(caster, &stage.light(l).kind).ok_or(PlanError::Singular { caster: c })?;
-                    pair.role = role(stage, c, pair, within);
-                    if pair.role == Role::Idle {
-                        plan.stats.cull(Culled::OffScreen);
-                    }
+                    let singular = PlanError::Singular { caster: caster.caster as usize };
+                    pair.aim(caster, &stage.light(l).kind).ok_or(singular)?;
+                    role(stage, c, pair, within)
                 }
-                Err(reason) => plan.stats.cull(reason),
-            }
+                Err(reason) => Role::Culled(reason),
+            };
         }
         if stage.steps.z_pass == ZPass::ByLight {
             z_pass::all_or_none(pairs);
         }
-        self.occlusion.leave_out(stage, relative, pairs, &mut plan.stats);
+        self.occlusion.leave_out(stage, relative, pairs);
         Ok(())
     }
 
@@ -78,7 +82,7 @@ impl Choice {
         scissor: Option<Rectangle>,
     ) -> Result<Rectangle, Culled> {
         let caster = &stage.placed[c];
-        if stage.light(l).excluded.contains(&c) {
+        if stage.light(l).excluded.contains(&(caster.caster as usize)) {
             return Err(Culled::Excluded);
         }
         if caster.bounds.is_empty() {
@@ -107,7 +111,7 @@ fn role(stage: &Stage<'_>, c: usize, pair: &Pair, within: Rectangle) -> Role {
     // A volume of which nothing is in view still darkens the whole image where the near rectangle is inside, but then its
     // dark cap or its sides come into view.
     if parts == Parts::default() {
-        return Role::Idle;
+        return Role::Culled(Culled::OffScreen);
     }
     let z_pass = stage.steps.z_pass != ZPass::Never && z_pass::is_clear(stage, c, pair, within);
     Role::Active { within, parts, z_pass }

@@ -8,7 +8,7 @@ use super::pair::{Pair, Role};
 use super::stage::Stage;
 use super::store::Store;
 use super::{Draw, FramePlan, LightStats, PlanError};
-use crate::volume::Volume;
+use crate::volume::{self, Volume};
 
 /// Appends the draws of light `l`.
 pub(super) fn append(
@@ -18,14 +18,7 @@ pub(super) fn append(
     store: &mut Store,
     plan: &mut FramePlan,
 ) -> Result<(), PlanError> {
-    for pair in pairs.iter() {
-        if let Role::Active { parts, z_pass, .. } = pair.role
-            && pair.batches() > 0
-        {
-            let case = if z_pass { 0 } else { 1 + usize::from(parts.light_cap) };
-            plan.lights[l].stats.cases[case] += 1;
-        }
-    }
+    plan.lights[l].stats.tell(stage, pairs);
     let batches = pairs.iter().map(Pair::batches).max().unwrap_or(0);
     for batch in 0..batches {
         let first = plan.draws.len() as u32;
@@ -49,10 +42,10 @@ pub(super) fn append(
 fn empty(stage: &Stage<'_>, c: usize, pair: &Pair) -> Draw {
     let (within, z_pass) = match pair.role {
         Role::Active { within, z_pass, .. } => (within, z_pass),
-        Role::Idle => ([0; 4], false),
+        Role::Culled(_) => ([0; 4], false),
     };
     Draw {
-        caster: c as u32,
+        caster: stage.placed[c].caster,
         light: pair.light,
         reach: 0.0,
         z_pass,
@@ -84,6 +77,7 @@ fn planned(
 ) -> Result<(), PlanError> {
     let caster = &stage.placed[c];
     let to_object = caster.object_from_relative();
+    let offset = volume::near(caster.first_vertex);
     let reach = caps::reach(&caster.bounds, pair.nearest(), pair.light, stage.view(), &to_object);
     for p in 0..pair.pieces().len() {
         let piece = &pair.pieces()[p];
@@ -95,7 +89,7 @@ fn planned(
         let mut draw = Draw { reach, near_layers, ..empty(stage, c, pair) };
         let piece = pair.pieces.value_mut().piece_mut(p);
         let base = store
-            .put(&mut piece.place, &piece.indices, piece.fresh, &mut plan.indices, &mut plan.changed)
+            .put(&mut piece.place, &piece.indices, offset, piece.fresh, &mut plan.indices, &mut plan.changed)
             .ok_or(PlanError::TooManyIndices)?;
         piece.fresh = false;
         plan.lights[l].stats.add(drawn.triangles());
@@ -106,6 +100,34 @@ fn planned(
 }
 
 impl LightStats {
+    /// Counts casters by what became of them: one whose sections differ by that of them which came farthest.
+    fn tell(&mut self, stage: &Stage<'_>, pairs: &[Pair]) {
+        let mut c = 0;
+        while let Some(placed) = stage.placed.get(c) {
+            let sections = stage.placed[c..].iter().take_while(|other| other.caster == placed.caster).count();
+            let (mut case, mut culled) = (None, None);
+            for pair in &pairs[c..c + sections] {
+                match pair.role {
+                    Role::Culled(reason) => culled = culled.max(Some(reason)),
+                    Role::Active { parts, z_pass, .. } if pair.batches() > 0 => {
+                        let drawn = if z_pass { 0 } else { 1 + usize::from(parts.light_cap) };
+                        case = case.max(Some(drawn));
+                        self.sections.cases[drawn] += 1;
+                    }
+                    Role::Active { .. } => {}
+                }
+            }
+            self.casters += 1;
+            self.sections.considered += sections as u32;
+            match (case, culled) {
+                (Some(case), _) => self.cases[case] += 1,
+                (None, Some(reason)) => self.culled[reason as usize] += 1,
+                (None, None) => {}
+            }
+            c += sections;
+        }
+    }
+
     fn add(&mut self, [sides, dark_cap, light_cap]: [u32; 3]) {
         self.triangles.sides += sides;
         self.triangles.dark_cap += dark_cap;

@@ -151,7 +151,7 @@ impl Pair {
         castings.extend_from_slice(&self.extracted.castings);
         let (parts, z_pass) = match self.role {
             Role::Active { parts, z_pass, .. } => (parts, z_pass),
-            Role::Idle => (Parts::default(), false),
+            Role::Culled(_) => (Parts::default(), false),
         };
         Extraction {
             light,
@@ -178,7 +178,10 @@ pub(super) fn choose(stage: &Stage<'_>, extractable: &[bool], pairs: &mut [Pair]
     let perspective = matches!(stage.view().projection, Projection::Perspective { .. });
     let mut candidates = 0;
     for (c, pair) in pairs.iter_mut().enumerate() {
-        let can = perspective && pair.role != Role::Idle && extractable.get(c).is_some_and(|&can| can);
+        let placed = &stage.placed[c];
+        let whole = placed.source.section.is_none();
+        let known = extractable.get(placed.caster as usize).is_some_and(|&can| can);
+        let can = perspective && pair.is_active() && whole && known;
         // Which of coincident triangles is visible would have to be known.
         let can = can && stage.topology(c).twins.is_empty();
         pair.on_device = can && pair.is_candidate(stage.steps.silhouettes);
@@ -188,7 +191,7 @@ pub(super) fn choose(stage: &Stage<'_>, extractable: &[bool], pairs: &mut [Pair]
         return None;
     }
     let triangles = |c: usize| stage.topology(c).by_part.len();
-    let active = pairs.iter().enumerate().filter(|(_, pair)| pair.role != Role::Idle);
+    let active = pairs.iter().enumerate().filter(|(_, pair)| pair.is_active());
     let most: usize = active.map(|(c, _)| triangles(c)).sum();
     if stage.input.counting == Counting::Raw || most <= SINGLE {
         let mut layers = 0;

@@ -31,13 +31,15 @@ mod stages;
 mod stats;
 mod store;
 mod technique;
+mod unchanged;
+mod weights;
 mod z_pass;
 
 pub use extraction::{DarkCap, Extraction, LightCap};
-pub use stats::{Culled, LightStats, Triangles};
+pub use stats::{Culled, LightStats, Sections, Triangles};
 pub use technique::{Counting, Silhouettes, Steps, Technique, Tiles, UnknownTechnique, ZPass};
 
-use crate::bounds::Bounds;
+use crate::bounds::{Bounds, OrientedBox};
 use crate::casting::{Casting, ObjectLight};
 use crate::light::LightKind;
 use crate::scissor::Rectangle;
@@ -60,20 +62,49 @@ pub struct Caster<'a> {
     pub world_from_object: DAffine3,
 }
 
-/// A light and the casters it ignores.
+/// A light, what bounds it, and the casters it ignores.
+///
+/// ```
+/// use zfail_plan::bounds::OrientedBox;
+/// use zfail_plan::glam::DVec3;
+/// use zfail_plan::light::LightKind;
+/// use zfail_plan::plan::ShadowLight;
+///
+/// let position = DVec3::new(0.0, 2.0, 0.0);
+/// let room = OrientedBox { center: position, half_axes: [DVec3::X * 3.0, DVec3::Y * 2.0, DVec3::Z * 4.0] };
+/// // A lamp that lights one room, and lets the torch that holds it (caster 0) be.
+/// let lamp = ShadowLight::new(LightKind::Point { position, range: f64::INFINITY }).within(room).excluding(&[0]);
+/// assert_eq!(lamp.bounds, Some(room));
+/// ```
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct ShadowLight<'a> {
     /// Placement and reach, world space.
     pub kind: LightKind,
+    /// Beyond which the light lights nothing, world space (McGuire et al. 2003, section 4, `Light.bounds`).
+    pub bounds: Option<OrientedBox>,
     /// Indices into the frame's casters.
     pub excluded: &'a [usize],
 }
 
-impl ShadowLight<'_> {
-    /// A light that all casters block.
+impl<'a> ShadowLight<'a> {
+    /// A light that all casters block, and that only its kind bounds.
     #[must_use]
     pub const fn new(kind: LightKind) -> Self {
-        Self { kind, excluded: &[] }
+        Self { kind, bounds: None, excluded: &[] }
+    }
+
+    /// One that lights nothing beyond a box, world space: wherever it is, and whatever its kind. Casters and pixels beyond it
+    /// are left out, and what the host draws has to be dark there.
+    #[must_use]
+    pub fn within(self, bounds: impl Into<Option<OrientedBox>>) -> Self {
+        Self { bounds: bounds.into(), ..self }
+    }
+
+    /// One that ignores casters, by their indices in the frame.
+    #[must_use]
+    pub const fn excluding(self, excluded: &'a [usize]) -> Self {
+        Self { excluded, ..self }
     }
 }
 
@@ -171,4 +202,6 @@ pub struct FramePlan {
     pub lights: Vec<LightPlan>,
     /// Ranges of `indices` that differ from those of the planner's frame before; everything else is as it was.
     pub changed: Vec<Range<u32>>,
+    /// Whether all of it is the plan of the frame before, because nothing has moved.
+    pub unchanged: bool,
 }

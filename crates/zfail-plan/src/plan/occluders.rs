@@ -6,10 +6,10 @@
 //! Occluders are visited in the order of their distance from the light, and only kept ones hide others, so that casters
 //! that coincide cannot hide each other.
 
+use super::Culled;
 use super::pair::{Pair, Role};
 use super::placed::Placed;
 use super::stage::Stage;
-use super::{Culled, LightStats};
 use crate::topology::{ConvexPart, Topology};
 use glam::{DAffine3, DVec3, DVec4};
 
@@ -73,10 +73,10 @@ pub(super) struct Occlusion {
 }
 
 impl Occlusion {
-    /// Idles the casters of a light (homogeneous, relative to the eye) that stand in the shadow of convex ones.
-    pub fn leave_out(&mut self, stage: &Stage<'_>, light: DVec4, pairs: &mut [Pair], stats: &mut LightStats) {
+    /// Leaves out the casters of a light (homogeneous, relative to the eye) that stand in the shadow of convex ones.
+    pub fn leave_out(&mut self, stage: &Stage<'_>, light: DVec4, pairs: &mut [Pair]) {
         let most = usize::from(stage.steps.occluders);
-        if most == 0 || pairs.iter().filter(|pair| pair.role != Role::Idle).count() < 2 {
+        if most == 0 || pairs.iter().filter(|pair| pair.is_active()).count() < 2 {
             return;
         }
         self.list(stage, light, pairs, most);
@@ -84,8 +84,7 @@ impl Occlusion {
         for &(_, c) in &self.occluders {
             let caster = &stage.placed[c];
             if self.shadows[..kept].iter().any(|shadow| shadow.holds(&caster.exact_corners)) {
-                pairs[c].role = Role::Idle;
-                stats.cull(Culled::Occluded);
+                pairs[c].role = Role::Culled(Culled::Occluded);
                 continue;
             }
             if kept == self.shadows.len() {
@@ -100,9 +99,8 @@ impl Occlusion {
         for (c, (pair, caster)) in pairs.iter_mut().zip(stage.placed).enumerate() {
             let itself = self.occluders.iter().any(|entry| entry.1 == c);
             let occluded = |shadow: &Shadow| shadow.holds(&caster.exact_corners);
-            if pair.role != Role::Idle && !itself && self.shadows[..kept].iter().any(occluded) {
-                pair.role = Role::Idle;
-                stats.cull(Culled::Occluded);
+            if pair.is_active() && !itself && self.shadows[..kept].iter().any(occluded) {
+                pair.role = Role::Culled(Culled::Occluded);
             }
         }
     }
@@ -114,7 +112,7 @@ impl Occlusion {
             caster.corners.iter().map(|c| way(*c)).fold(f64::INFINITY, f64::min)
         };
         self.occluders.clear();
-        let active = pairs.iter().zip(stage.placed).enumerate().filter(|(_, (pair, _))| pair.role != Role::Idle);
+        let active = pairs.iter().zip(stage.placed).enumerate().filter(|(_, (pair, _))| pair.is_active());
         for (c, (_, caster)) in active {
             if stage.topology(c).convex.is_some() {
                 let size = caster.axes.iter().map(|axis| axis.length_squared()).sum::<f64>();

@@ -1,15 +1,16 @@
 //! One light and one caster: facing and silhouette, kept while the light stands still in object space.
 
-use super::caps;
+use super::Culled;
 use super::extraction::Extracted;
 use super::kept::Kept;
 use super::meridians::{self, Crossings, Lines};
 use super::near_count::{self, NearCount};
 use super::off_screen::Parts;
 use super::pieces::{Piece, Pieces};
-use super::placed::Placed;
+use super::placed::{Placed, Source};
 use super::pyramid::Pyramid;
-use crate::casting::{self, Casting, ObjectLight};
+use super::weights::Weights;
+use crate::casting::ObjectLight;
 use crate::light::LightKind;
 use crate::scissor::Rectangle;
 use crate::stack::{self, Outline};
@@ -19,11 +20,10 @@ use crate::volume;
 use glam::DAffine3;
 
 /// What becomes of a pair this frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Role {
-    /// Draws nothing.
-    #[default]
-    Idle,
+    /// Draws nothing, for a reason.
+    Culled(Culled),
     /// Draws some of its parts in some pixels.
     Active {
         within: Rectangle,
@@ -33,6 +33,12 @@ pub(super) enum Role {
     },
 }
 
+impl Default for Role {
+    fn default() -> Self {
+        Self::Culled(Culled::Empty)
+    }
+}
+
 /// The state of one light-caster pair between frames.
 #[derive(Debug, Default)]
 pub(super) struct Pair {
@@ -40,7 +46,7 @@ pub(super) struct Pair {
     /// From which this frame's z-pass starts.
     pub start: NearCount,
     pub light: ObjectLight,
-    mesh: u64,
+    source: Source,
     /// Frames on end in each of which light or mesh were not those of the frame before.
     pub moves: u32,
     /// How far the light has moved in the last of them, object space; infinite for another mesh or kind of light.
@@ -63,54 +69,48 @@ pub(super) struct Pair {
 type KnownNear = Kept<(Division, Pyramid), Option<NearCount>>;
 
 /// What weights depend on: mesh, light, and whether dark caps are planar.
-type Facing = (u64, ObjectLight, bool);
+type Facing = (Source, ObjectLight, bool);
 
 /// Tells divisions of a pair's triangles apart.
 pub(super) type Division = u64;
-
-/// One integer per triangle.
-#[derive(Debug, Default)]
-struct Weights {
-    castings: Vec<Casting>,
-    by_triangle: Vec<i8>,
-    /// How many are not 0.
-    casting: usize,
-    /// How near to the light planar dark caps would come at a distance of 1.
-    nearest: f64,
-}
 
 impl Pair {
     /// Points the pair at a light and a caster; `None` if the caster's transform cannot be inverted.
     pub fn aim(&mut self, caster: &Placed, kind: &LightKind) -> Option<()> {
         let light = caster.object_light(kind)?;
-        if self.mesh != caster.mesh || self.light != light {
-            let comparable = self.mesh == caster.mesh && self.light.w == light.w;
+        if self.source != caster.source || self.light != light {
+            let comparable = self.source == caster.source && self.light.w == light.w;
             let step = (light - self.light).truncate().as_dvec3().length();
             self.step = if comparable { step } else { f64::INFINITY };
             self.moves = self.moves.saturating_add(1);
         } else {
             self.moves = 0;
         }
-        if self.mesh != caster.mesh {
+        if self.source != caster.source {
             self.pieces.value_mut().forget_twins();
         }
-        self.mesh = caster.mesh;
+        self.source = caster.source;
         self.light = light;
         Some(())
     }
 
     /// The mesh, by [`super::Caster::mesh`].
     pub fn mesh(&self) -> u64 {
-        self.mesh
+        self.source.mesh
+    }
+
+    /// Whether it draws anything.
+    pub fn is_active(&self) -> bool {
+        matches!(self.role, Role::Active { .. })
     }
 
     /// Whether the pair draws anything whose index lists are made here.
     pub fn is_planned(&self) -> bool {
-        self.role != Role::Idle && !self.on_device
+        self.is_active() && !self.on_device
     }
 
     fn facing(&self, view: &View) -> Facing {
-        (self.mesh, self.light, has_planar_caps(view))
+        (self.source, self.light, has_planar_caps(view))
     }
 
     /// Whether [`Self::weigh`] would have something to do.
@@ -123,15 +123,8 @@ impl Pair {
         if !self.is_stale(view) {
             return;
         }
-        let facing @ (_, light, planar) = self.facing(view);
-        self.weighed.get(facing, |weights| {
-            casting::castings(topology, light, &mut weights.castings);
-            casting::weights(topology, &weights.castings, light, &mut weights.by_triangle);
-            if planar {
-                weights.nearest = caps::nearest(topology, &mut weights.by_triangle, light);
-            }
-            weights.casting = weights.by_triangle.iter().filter(|&&c| c != 0).count();
-        });
+        let facing @ (source, light, planar) = self.facing(view);
+        self.weighed.get(facing, |weights| weights.weigh(topology, source, light, planar));
         self.batch_of.clear();
         self.division += 1;
     }
@@ -181,7 +174,7 @@ impl Pair {
         }
         let converging = self.is_converging();
         let Self { weighed, batch_of, pieces, division, .. } = self;
-        let weights = &weighed.value().by_triangle;
+        let weights = weighed.value();
         pieces.get(*division, |pieces| pieces.build_sides(topology, weights, batch_of, converging));
     }
 
@@ -197,7 +190,7 @@ impl Pair {
 
     /// Whether dark caps lie at a finite distance.
     fn is_planar(&self) -> bool {
-        self.weighed.is_for(&(self.mesh, self.light, true))
+        self.weighed.is_for(&(self.source, self.light, true))
     }
 
     /// Adds the caps that this frame draws to the sides, unless they are there.
@@ -265,7 +258,7 @@ impl Pair {
     /// One more than the last batch in which the pair draws anything.
     pub fn batches(&self) -> usize {
         match self.role {
-            Role::Idle => return 0,
+            Role::Culled(_) => return 0,
             Role::Active { .. } if self.on_device => return 1,
             Role::Active { .. } => {}
         }

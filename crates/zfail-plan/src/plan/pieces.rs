@@ -6,6 +6,7 @@
 use super::off_screen::Parts;
 use super::pair::{Pair, Role};
 use super::store::Place;
+use super::weights::Weights;
 use crate::topology::{Cover, NONE, Part, Topology};
 use crate::volume::{self, Volume};
 use glam::DVec4;
@@ -55,14 +56,17 @@ impl Pieces {
     }
 
     /// Makes pieces with their sides and nothing else; `converging` if extruded vertices are one point.
-    pub fn build_sides(&mut self, topology: &Topology, weights: &[i8], batch_of: &[u16], converging: bool) {
+    pub fn build_sides(&mut self, topology: &Topology, weights: &Weights, batch_of: &[u16], converging: bool) {
         self.live = 0;
         if batch_of.is_empty() {
-            if weights.iter().any(|&weight| weight != 0) {
-                self.add(0, |sides| volume::sides(topology, weights, converging, sides));
+            if weights.casting > 0 {
+                let (states, weights) = (weights.states(), &weights.by_triangle);
+                let silhouette = volume::sides_where_facing_turns;
+                self.add(0, |sides| silhouette(topology, weights, states, converging, sides));
             }
             return;
         }
+        let weights = &weights.by_triangle;
         for (batch, silhouette) in silhouettes(topology, weights, batch_of) {
             self.add(batch, |sides| {
                 for (edge, times) in silhouette {

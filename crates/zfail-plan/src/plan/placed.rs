@@ -1,19 +1,40 @@
-//! A caster as this frame's lights find it.
+//! A caster, or a section of one, as this frame's lights find it.
 //!
 //! In: topology and transform. Out: its box relative to the eye, and lights and eye in its object space. Computed once a
-//! frame, whatever the number of lights.
+//! frame, whatever the number of lights. From here on "caster" means whichever is decided on by itself.
 
 use super::Caster;
 use crate::bounds::Bounds;
 use crate::casting::{self, ObjectLight};
 use crate::light::LightKind;
+use crate::topology::Topology;
 use crate::view::{Projection, View};
 use glam::{DAffine3, DMat3, DVec3, DVec4};
+
+/// What is placed; told apart from frame to frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Source {
+    /// [`Caster::mesh`].
+    pub mesh: u64,
+    /// Which of the topology's sections; the whole if none.
+    pub section: Option<u32>,
+}
+
+impl Source {
+    pub fn topology<'a>(&self, caster: &Caster<'a>) -> &'a Topology {
+        let section = self.section.and_then(|section| caster.topology.sections().get(section as usize));
+        section.map_or(caster.topology, |section| &section.topology)
+    }
+}
 
 /// A caster's placement; "relative" is relative to the eye, in world directions.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placed {
-    pub mesh: u64,
+    /// Index into the frame's casters.
+    pub caster: u32,
+    pub source: Source,
+    /// The mesh's vertex that is vertex 0 of the topology.
+    pub first_vertex: u32,
     pub world_from_object: DAffine3,
     pub relative_from_object: DAffine3,
     object_from_world_directions: DMat3,
@@ -34,14 +55,24 @@ pub(super) struct Placed {
 }
 
 impl Placed {
-    /// Places `caster` before `view`.
-    pub fn new(caster: &Caster<'_>, view: &View) -> Self {
+    /// Places caster number `index` before `view`, section by section if `by_section` and it has any.
+    pub fn all(index: usize, caster: &Caster<'_>, view: &View, by_section: bool) -> impl Iterator<Item = Self> {
+        let sections = if by_section { caster.topology.sections().len() } else { 0 };
+        let pieces = (0..sections as u32).map(Some).chain((sections == 0).then_some(None));
+        pieces.map(move |section| Self::new(index, caster, section, view))
+    }
+
+    fn new(index: usize, caster: &Caster<'_>, section: Option<u32>, view: &View) -> Self {
+        let source = Source { mesh: caster.mesh, section };
+        let first_vertex = section.map_or(0, |section| caster.topology.sections()[section as usize].first_vertex);
         let world_from_object = caster.world_from_object;
         let relative_from_object =
             DAffine3 { translation: world_from_object.translation - view.eye(), ..world_from_object };
-        let bounds = caster.topology.bounds();
+        let bounds = source.topology(caster).bounds();
         let mut placed = Self {
-            mesh: caster.mesh,
+            caster: index as u32,
+            source,
+            first_vertex,
             world_from_object,
             relative_from_object,
             object_from_world_directions: world_from_object.matrix3.inverse(),

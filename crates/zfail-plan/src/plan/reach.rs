@@ -1,8 +1,10 @@
-//! How far a light reaches: the scissor rectangle and the casters that its range and cone leave.
+//! How far a light reaches: the scissor rectangle and the casters that its range, cone and box leave.
 //!
-//! In: a light and a view. Out: convex bounds of the lit region, relative to the eye.
+//! In: a light and a view. Out: convex bounds of the lit region, relative to the eye. A box bounds what artists make of a
+//! light's attenuation better than a sphere (McGuire et al. 2003, section 4), the sphere of its half diagonal in particular.
 
-use crate::bounds::Bounds;
+use super::ShadowLight;
+use crate::bounds::{Bounds, OrientedBox};
 use crate::light::LightKind;
 use crate::scissor::{self, Rectangle};
 use crate::view::View;
@@ -18,8 +20,11 @@ const WIDEST: f64 = 1.4;
 pub(super) struct Reach {
     ball: Option<(DVec3, f64)>,
     cone: Option<Cone>,
-    /// The region is within `dot(xyz, p) + w >= 0` for all of these.
+    bounds: Option<OrientedBox>,
+    /// What is lit is within `dot(xyz, p) + w >= 0` for all of these.
     pub planes: Vec<DVec4>,
+    /// For so many of them, the first, the light is within too, and with it all that can stand between it and what is lit.
+    around_light: usize,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -32,13 +37,15 @@ struct Cone {
 impl Reach {
     /// No limits.
     pub fn clear(&mut self) {
-        (self.ball, self.cone) = (None, None);
+        (self.ball, self.cone, self.bounds) = (None, None, None);
         self.planes.clear();
+        self.around_light = 0;
     }
 
-    /// The reach of `kind`.
-    pub fn set(&mut self, kind: &LightKind, eye: DVec3) {
+    /// The reach of `light`.
+    pub fn set(&mut self, light: &ShadowLight<'_>, eye: DVec3) {
         self.clear();
+        let kind = &light.kind;
         if let LightKind::Point { position, range } | LightKind::Spot { position, range, .. } = *kind
             && range.is_finite()
         {
@@ -70,6 +77,25 @@ impl Reach {
             }
             self.cone = Some(Cone { apex, edges });
         }
+        self.around_light = self.planes.len();
+        self.bounds = light.bounds.map(|bounds| {
+            let bounds = bounds.relative_to(eye);
+            // Whoever shades compares with less precision.
+            let extent = bounds.corners().iter().map(|corner| corner.length()).fold(0.0, f64::max);
+            bounds.grown(1e-6 * extent)
+        });
+        if let Some(bounds) = self.bounds {
+            let homogeneous = kind.homogeneous();
+            let relative = (homogeneous.truncate() - eye * homogeneous.w).extend(homogeneous.w);
+            for plane in bounds.planes() {
+                self.planes.push(plane);
+                if plane.dot(relative) >= 0.0 {
+                    let last = self.planes.len() - 1;
+                    self.planes.swap(self.around_light, last);
+                    self.around_light += 1;
+                }
+            }
+        }
     }
 
     /// Pixels whose surfaces the light may reach; `None` if there are none.
@@ -85,6 +111,10 @@ impl Reach {
             }
             within = scissor::intersection(within, scissor::of_points(view, &points)?)?;
         }
+        if let Some(bounds) = self.bounds {
+            let corners = bounds.corners().map(|corner| corner.extend(1.0));
+            within = scissor::intersection(within, scissor::of_points(view, &corners)?)?;
+        }
         Some(within)
     }
 
@@ -96,7 +126,7 @@ impl Reach {
         {
             return true;
         }
-        self.planes.iter().any(|plane| {
+        self.planes[..self.around_light].iter().any(|plane| {
             let n = plane.truncate();
             let extent: f64 = axes.iter().map(|axis| n.dot(*axis).abs()).sum();
             let height = n.dot(center) + plane.w;
@@ -120,6 +150,10 @@ mod tests {
         View::new(DAffine3::IDENTITY, projection, [100, 100])
     }
 
+    fn set(reach: &mut Reach, kind: LightKind, bounds: Option<OrientedBox>) {
+        reach.set(&ShadowLight::new(kind).within(bounds), DVec3::ZERO);
+    }
+
     fn excludes(reach: &Reach, center: DVec3, half: f64) -> bool {
         let world = Bounds { min: center - half, max: center + half };
         reach.excludes(&world, center, [DVec3::X * half, DVec3::Y * half, DVec3::Z * half])
@@ -128,7 +162,7 @@ mod tests {
     #[test]
     fn a_cone_bounds_scissor_and_casters() {
         let mut reach = Reach::default();
-        reach.set(&spot(0.3, f64::INFINITY), DVec3::ZERO);
+        set(&mut reach, spot(0.3, f64::INFINITY), None);
         let [x, y, width, height] = reach.scissor(&view()).expect("in view");
         assert!(x.abs_diff(49) <= 1 && x + width == 100, "{x} {width}");
         // tan(0.3) = 0.31 either way at first, and more towards the eye: the image's whole height at its end.
@@ -136,10 +170,34 @@ mod tests {
         assert!(!excludes(&reach, DVec3::new(3.0, 0.5, -5.0), 0.1), "within the cone");
         assert!(excludes(&reach, DVec3::new(3.0, 2.0, -5.0), 0.1), "beside the cone");
         assert!(excludes(&reach, DVec3::new(-1.0, 0.0, -5.0), 0.1), "behind the light");
-        reach.set(&spot(0.3, 2.0), DVec3::ZERO);
+        set(&mut reach, spot(0.3, 2.0), None);
         assert!(excludes(&reach, DVec3::new(3.0, 0.5, -5.0), 0.1), "out of range");
-        reach.set(&spot(1.5, f64::INFINITY), DVec3::ZERO);
+        set(&mut reach, spot(1.5, f64::INFINITY), None);
         assert!(!excludes(&reach, DVec3::new(0.1, 4.0, -5.0), 0.1), "a wide cone");
+    }
+
+    #[test]
+    fn a_box_bounds_scissor_and_casters() {
+        let half_axes = [DVec3::X * 0.5, DVec3::Y * 2.0, DVec3::Z * 0.5];
+        let lamp = LightKind::Point { position: DVec3::new(0.0, 0.0, -5.0), range: f64::INFINITY };
+        let at = |center| Some(OrientedBox { center, half_axes });
+        let mut reach = Reach::default();
+        set(&mut reach, lamp, at(DVec3::new(0.0, 0.0, -5.0)));
+        // 50 pixels for a tangent of 1; the near faces are at depth 4.5.
+        assert_eq!(reach.scissor(&view()), Some([43, 26, 14, 48]));
+        assert!(!excludes(&reach, DVec3::new(0.0, 1.9, -5.0), 0.05), "within the box");
+        assert!(excludes(&reach, DVec3::new(0.7, 0.0, -5.0), 0.1), "within the sphere around it");
+        // A light beside its box: what lies between casts into it.
+        set(&mut reach, lamp, at(DVec3::new(3.0, 0.0, -5.0)));
+        assert!(!excludes(&reach, DVec3::new(1.5, 0.0, -5.0), 0.1), "between them");
+        assert!(excludes(&reach, DVec3::new(4.0, 0.0, -5.0), 0.1), "beyond the box");
+        assert!(excludes(&reach, DVec3::new(1.5, 0.0, -4.0), 0.1), "beside the way");
+        let sun = LightKind::Directional { direction: DVec3::NEG_Y };
+        set(&mut reach, sun, at(DVec3::new(0.0, 0.0, -5.0)));
+        assert!(!excludes(&reach, DVec3::new(0.0, 90.0, -5.0), 0.1), "above the box");
+        assert!(excludes(&reach, DVec3::new(0.0, -3.0, -5.0), 0.1), "below it");
+        set(&mut reach, lamp, at(DVec3::new(0.0, 0.0, 5.0)));
+        assert_eq!(reach.scissor(&view()), None, "behind the eye");
     }
 
     #[test]
@@ -147,17 +205,23 @@ mod tests {
         let mut numbers = zfail_testing::Random(9);
         let mut random = || numbers.signed();
         let mut reached = 0;
-        for _ in 0..400 {
+        for _ in 0..600 {
             let position = DVec3::new(random(), random(), random() - 1.0) * 4.0;
             let direction = DVec3::new(random(), random(), random()).normalize();
             let (range, outer) = (1.0 + random().abs() * 4.0, 0.1 + 1.4 * random().abs());
             let kind = LightKind::Spot { position, direction, range, inner: 0.0, outer };
+            let (u, v) = direction.any_orthonormal_pair();
+            let half_axes = [direction * (0.5 + random().abs() * 3.0), u * (0.2 + random().abs() * 2.0), v * 1.5];
+            let bounds = Some(OrientedBox { center: position, half_axes }).filter(|_| range > 3.0);
+            let inside = |p: DVec3| {
+                bounds.is_none_or(|b| b.planes().iter().all(|plane| plane.truncate().dot(p) + plane.w >= 0.0))
+            };
             let mut reach = Reach::default();
-            reach.set(&kind, DVec3::ZERO);
+            set(&mut reach, kind, bounds);
             let within = reach.scissor(&view());
             for _ in 0..50 {
                 let p = DVec3::new(random(), random(), random() - 1.0) * 6.0;
-                if !kind.reaches(p) {
+                if !(kind.reaches(p) && inside(p)) {
                     continue;
                 }
                 reached += 1;

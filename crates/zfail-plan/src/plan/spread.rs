@@ -3,7 +3,7 @@
 //! In: weights of every pair of one light. Out: a batch number per triangle, so that no ray crosses more layers of a batch
 //! than seven bits can count.
 
-use super::pair::{Pair, Role};
+use super::pair::Pair;
 use super::sheets::sheets;
 use super::stage::Stage;
 use crate::light::LightKind;
@@ -31,7 +31,7 @@ pub(super) fn spread(stage: &Stage<'_>, kind: &LightKind, pairs: &mut [Pair], sh
     let items = items(stage, kind, pairs);
     let mut batches = Vec::new();
     halve(&items, |run, work| is_within(stage, pairs, shape, run, work), work, &mut batches);
-    for pair in pairs.iter_mut().filter(|pair| pair.role != Role::Idle) {
+    for pair in pairs.iter_mut().filter(|pair| pair.is_active()) {
         let triangles = pair.weights().len();
         pair.divide(|batch_of| {
             batch_of.clear();
@@ -51,9 +51,7 @@ fn items(stage: &Stage<'_>, kind: &LightKind, pairs: &[Pair]) -> Vec<Item> {
     let light = kind.homogeneous();
     let mut items = Vec::new();
     let mut nearest = vec![f64::INFINITY; pairs.len()];
-    for (p, (pair, caster)) in
-        pairs.iter().zip(stage.placed).enumerate().filter(|(_, (pair, _))| pair.role != Role::Idle)
-    {
+    for (p, (pair, caster)) in pairs.iter().zip(stage.placed).enumerate().filter(|(_, (pair, _))| pair.is_active()) {
         let sheets = sheets(stage.topology(p), pair.weights());
         let first = items.len();
         for triangle in (0..pair.weights().len()).filter(|&t| pair.weights()[t] != 0) {

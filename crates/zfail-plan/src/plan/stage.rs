@@ -12,7 +12,7 @@ pub(super) struct Stage<'a> {
     pub input: &'a Input<'a>,
     /// Those of the input that keep what it counts.
     pub steps: Steps,
-    /// The input's casters, placed.
+    /// The input's casters, or their sections, placed.
     pub placed: &'a [Placed],
 }
 
@@ -32,6 +32,7 @@ impl<'a> Stage<'a> {
     }
 
     pub fn topology(&self, caster: usize) -> &'a Topology {
-        self.input.casters[caster].topology
+        let placed = &self.placed[caster];
+        placed.source.topology(&self.input.casters[placed.caster as usize])
     }
 }

@@ -10,8 +10,9 @@ use super::pair::Pair;
 use super::placed::Placed;
 use super::stage::Stage;
 use super::store::Store;
+use super::unchanged::Unchanged;
 use super::z_pass;
-use super::{Counting, FramePlan, Input, LightPlan, LightStats, PlanError};
+use super::{Counting, FramePlan, Input, LightPlan, LightStats, PlanError, Silhouettes};
 use crate::parallel;
 use crate::scissor::{self, Rectangle};
 use crate::topology::Topology;
@@ -24,6 +25,7 @@ pub struct Planner {
     plan: FramePlan,
     placed: Vec<Placed>,
     choice: Choice,
+    unchanged: Unchanged,
 }
 
 /// What is known of one light between frames.
@@ -51,6 +53,7 @@ impl Planner {
 
     /// The last frame planned, to be changed before it is drawn. The next frame is planned as if it had not been.
     pub fn last_mut(&mut self) -> &mut FramePlan {
+        self.unchanged.forget();
         &mut self.plan
     }
 
@@ -68,16 +71,52 @@ impl Planner {
     /// # Errors
     /// As [`Self::plan`].
     pub fn plan_extracting(&mut self, input: &Input<'_>, extractable: &[bool]) -> Result<&FramePlan, PlanError> {
+        if self.unchanged.is(input, extractable) {
+            self.rest();
+            return Ok(&self.plan);
+        }
+        self.plan.unchanged = false;
         let outcome = self.fill(input, extractable);
-        if outcome.is_err() {
+        match &outcome {
+            // What the device finds is the planner's again once it stands still.
+            Ok(()) if self.lights.iter().all(|light| light.layers.is_none()) => self.unchanged.keep(input, extractable),
+            Ok(()) => self.unchanged.forget(),
             // Nothing half-planned may be drawn.
-            *self = Self::default();
+            Err(_) => *self = Self::default(),
         }
         outcome.map(|()| &self.plan)
     }
 
+    /// The frame before is this frame, too.
+    fn rest(&mut self) {
+        if !self.plan.unchanged {
+            self.plan.unchanged = true;
+            self.plan.changed.clear();
+            self.plan.lights.iter_mut().for_each(|light| light.stats.searched = 0);
+            self.lights.iter_mut().flat_map(|light| &mut light.pairs).for_each(|pair| pair.moves = 0);
+        }
+    }
+
     fn fill(&mut self, input: &Input<'_>, extractable: &[bool]) -> Result<(), PlanError> {
-        let (casters, lights) = (input.casters.len(), input.lights.len());
+        let steps = match input.counting {
+            Counting::Verdict => input.steps,
+            Counting::Raw => input.steps.keeping_counts(),
+        };
+        let mut placed = std::mem::take(&mut self.placed);
+        placed.clear();
+        for (c, caster) in input.casters.iter().enumerate() {
+            // The device finds silhouettes of whole meshes.
+            let left = steps.silhouettes == Silhouettes::Gpu && extractable.get(c).is_some_and(|&can| can);
+            placed.extend(Placed::all(c, caster, input.view, steps.by_section && !left));
+        }
+        self.fit(placed.len(), input.lights.len());
+        let outcome = self.stages(&Stage { input, steps, placed: &placed }, extractable);
+        self.placed = placed;
+        outcome
+    }
+
+    /// Makes room for pairs, and forgets all of them if there are others now.
+    fn fit(&mut self, casters: usize, lights: usize) {
         if self.lights.len() != lights || self.lights.iter().any(|light| light.pairs.len() != casters) {
             self.lights.iter_mut().for_each(|light| light.pairs.clear());
             self.store = Store::default();
@@ -91,16 +130,6 @@ impl Planner {
         self.plan.draws.clear();
         self.plan.castings.clear();
         self.store.begin(&mut self.plan.indices, &mut self.plan.changed);
-        let mut placed = std::mem::take(&mut self.placed);
-        placed.clear();
-        placed.extend(input.casters.iter().map(|caster| Placed::new(caster, input.view)));
-        let steps = match input.counting {
-            Counting::Verdict => input.steps,
-            Counting::Raw => input.steps.keeping_counts(),
-        };
-        let outcome = self.stages(&Stage { input, steps, placed: &placed }, extractable);
-        self.placed = placed;
-        outcome
     }
 
     fn stages(&mut self, stage: &Stage<'_>, extractable: &[bool]) -> Result<(), PlanError> {
@@ -110,6 +139,7 @@ impl Planner {
             }
             return Ok(());
         }
+        self.choice.begin(stage);
         for (l, (light, plan)) in self.lights.iter_mut().zip(&mut self.plan.lights).enumerate() {
             self.choice.choose(stage, l, &mut light.pairs, plan)?;
         }

@@ -3,7 +3,7 @@
 use crate::scissor::Rectangle;
 
 /// Why a caster is left out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Culled {
     /// The light ignores it.
     Excluded,
@@ -11,7 +11,7 @@ pub enum Culled {
     Empty,
     /// The light reaches nothing in view.
     LightOffScreen,
-    /// It lies beyond the light's range or cone.
+    /// It lies beyond the light's range, cone or box.
     OutOfReach,
     /// No part of its volume comes into view.
     OffScreen,
@@ -57,6 +57,8 @@ pub struct LightStats {
     pub culled: [u32; Culled::ALL.len()],
     /// Casters drawn in case 1 (z-pass), 2 (z-fail without light cap) and 3 (z-fail) of McGuire et al., section 7.
     pub cases: [u32; 3],
+    /// The same by section, where meshes of several parts are decided on in sections.
+    pub sections: Sections,
     /// Layers over the whole near rectangle, of casters in case 1.
     pub near_count: u32,
     /// Casters whose silhouettes the device finds. Only it knows how many triangles and vertices they have.
@@ -82,10 +84,15 @@ impl LightStats {
     pub fn has_shadow(&self) -> bool {
         self.vertices > 0 || self.near_count > 0 || self.extracted > 0
     }
+}
 
-    pub(super) fn cull(&mut self, reason: Culled) {
-        self.culled[reason as usize] += 1;
-    }
+/// What became of sections ([`crate::topology::Topology::sections`]); a caster without any is one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sections {
+    /// All of them.
+    pub considered: u32,
+    /// Those that draw anything, by case.
+    pub cases: [u32; 3],
 }
 
 /// Triangles of shadow volumes by part.

@@ -41,12 +41,13 @@ impl Store {
         }
     }
 
-    /// Puts `list` into the array (`fresh`: it is not what was put there before) and returns where it starts; `None` if
-    /// the array would outgrow 32 bits.
+    /// Puts `list`, `offset` added to each index, into the array (`fresh`: it is not what was put there before) and returns
+    /// where it starts; `None` if the array would outgrow 32 bits.
     pub fn put(
         &mut self,
         place: &mut Place,
         list: &[u32],
+        offset: u32,
         fresh: bool,
         indices: &mut Vec<u32>,
         changed: &mut Vec<Range<u32>>,
@@ -67,7 +68,8 @@ impl Store {
             self.live += capacity as usize;
         }
         let range = place.start..place.start + length;
-        indices[range.start as usize..range.end as usize].copy_from_slice(list);
+        let there = &mut indices[range.start as usize..range.end as usize];
+        there.iter_mut().zip(list).for_each(|(index, i)| *index = i + offset);
         match changed.last_mut() {
             Some(last) if last.end <= range.start && range.start - last.end <= 64 => last.end = range.end,
             _ => changed.push(range),
@@ -93,7 +95,7 @@ mod tests {
         let (mut store, mut indices, mut changed) = (Store::default(), Vec::new(), Vec::new());
         let mut places = [Place::default(); 2];
         let mut put = |store: &mut Store, p: &mut Place, list: &[u32], fresh| {
-            store.put(p, list, fresh, &mut indices, &mut changed).map(|at| (at, changed.clone(), indices.clone()))
+            store.put(p, list, 0, fresh, &mut indices, &mut changed).map(|at| (at, changed.clone(), indices.clone()))
         };
         let (at, _, _) = put(&mut store, &mut places[0], &[1, 2, 3, 4], true).expect("room");
         assert_eq!(at, 0);
@@ -108,7 +110,7 @@ mod tests {
         let mut large = vec![0; 100_000];
         store.begin(&mut large, &mut changed);
         assert!(large.is_empty());
-        assert_eq!(store.put(&mut places[1], &[7; 8], false, &mut large, &mut changed), Some(0), "placed afresh");
-        assert_eq!((changed.len(), &changed[0]), (1, &(0..8)));
+        assert_eq!(store.put(&mut places[1], &[5; 8], 2, false, &mut large, &mut changed), Some(0), "placed afresh");
+        assert_eq!((changed.len(), &changed[0], &large[..8]), (1, &(0..8), &[7; 8][..]));
     }
 }

@@ -38,6 +38,7 @@ impl Technique {
     pub const fn steps(self) -> Steps {
         let nothing = Steps {
             reach: false,
+            by_section: false,
             off_screen: false,
             z_pass: ZPass::Never,
             near_count: false,
@@ -47,14 +48,15 @@ impl Technique {
             tiles: Tiles::Never,
             silhouettes: Silhouettes::Cpu,
         };
-        let mcguire = Steps { reach: true, off_screen: true, z_pass: ZPass::ByCaster, fan: true, ..nothing };
+        let mcguire =
+            Steps { reach: true, off_screen: true, z_pass: ZPass::ByCaster, fan: true, receivers: true, ..nothing };
         match self {
             Self::EverittKilgard => nothing,
             Self::Lengyel => Steps { reach: true, z_pass: ZPass::ByLight, ..nothing },
             Self::Mcguire => mcguire,
             Self::Auto => {
                 let (tiles, silhouettes) = (Tiles::WhereCheaper, Silhouettes::WhereCheaper);
-                Steps { near_count: true, receivers: true, occluders: 8, tiles, silhouettes, ..mcguire }
+                Steps { by_section: true, near_count: true, occluders: 8, tiles, silhouettes, ..mcguire }
             }
         }
     }
@@ -65,6 +67,8 @@ impl Technique {
 pub struct Steps {
     /// Leave out pixels and casters that the light cannot reach.
     pub reach: bool,
+    /// Decide by section of a mesh instead of by mesh: its case, its caps, what is culled, and its pixels (E&K section 3.4).
+    pub by_section: bool,
     /// Leave out volumes, and parts of volumes, that do not come into view.
     pub off_screen: bool,
     /// Where to count in front of the visible surface instead of behind it.
@@ -73,7 +77,9 @@ pub struct Steps {
     pub near_count: bool,
     /// Close volumes at infinity by a fan over the silhouette where that is valid.
     pub fan: bool,
-    /// Draw a volume only where the surfaces that it can shadow lie (needs [`super::Input::receivers`]).
+    /// Draw a volume only where the surfaces lie that it can shadow, in depth as on the image (needs
+    /// [`super::Input::receivers`]). McGuire et al. 2003, section 6, line 17, sets bounds of depth for that; wgpu has none, so
+    /// what of the scene lies within them is asked beforehand.
     pub receivers: bool,
     /// Convex casters, per light, in whose shadow other casters are looked for to leave them out.
     pub occluders: u8,

@@ -11,14 +11,19 @@
 
 mod bend;
 mod closed;
+mod cones;
 mod convex;
 mod embedded;
 mod parts;
+mod sections;
 mod twins;
 mod weld;
 
+pub use cones::ConeTree;
+pub(crate) use cones::NodeFacing;
 pub use convex::ConvexPart;
 pub use parts::{Cover, Part, Shape};
+pub use sections::Section;
 pub use twins::same_winding;
 
 use crate::bounds::Bounds;
@@ -133,6 +138,10 @@ pub struct Topology {
     /// Its largest convex part, if it has one of few faces.
     pub(crate) convex: Option<ConvexPart>,
     bounds: Bounds,
+    /// Its parts by place, where it has several and is rigid.
+    sections: Vec<Section>,
+    /// Over its triangles, where it is rigid, large and one section.
+    cones: Option<ConeTree>,
     /// Of a mesh that bends.
     bend: Option<bend::Bend>,
     edges: Vec<Edge>,
@@ -214,6 +223,12 @@ impl Topology {
         self.convex.as_ref()
     }
 
+    /// Parts that lie together, where the mesh is rigid and has several such groups: what can be decided on by itself.
+    #[must_use]
+    pub fn sections(&self) -> &[Section] {
+        &self.sections
+    }
+
     fn build(
         positions: &[[f32; 3]],
         triangles: &[[u32; 3]],
@@ -227,10 +242,13 @@ impl Topology {
         }
         check_finite(positions)?;
         let vertices = positions.len();
-        let weld::Welded { positions, sources, triangles } = weld::weld(positions, triangles, alike)?;
+        let weld::Welded { mut positions, sources, mut triangles } = weld::weld(positions, triangles, alike)?;
+        let casts = |t: usize, [a, b, c]: [u32; 3]| a != b && b != c && c != a && surface(t) != Blocking::Nothing;
+        let vertices_of_sections =
+            if alike.is_some() { Vec::new() } else { sections::number(&mut positions, &mut triangles, casts) };
         let mut uses = Vec::with_capacity(triangles.len() * 3);
         for (t, &[a, b, c]) in triangles.iter().enumerate() {
-            if a != b && b != c && c != a && surface(t) != Blocking::Nothing {
+            if casts(t, [a, b, c]) {
                 for (from, to) in [(a, b), (b, c), (c, a)] {
                     let reversed = if from < to { 0 } else { REVERSED };
                     uses.push(([from.min(to), from.max(to)], t as u32 | reversed));
@@ -241,17 +259,10 @@ impl Topology {
 
         let mut topology = Self {
             part_of: vec![NONE; triangles.len()],
-            positions,
             triangles,
-            parts: Vec::new(),
-            by_part: Vec::new(),
-            twins: Vec::new(),
-            convex: None,
-            bounds: Bounds::EMPTY,
             bend: alike.map(|_| bend::Bend::new(vertices, sources)),
             edges: Vec::with_capacity(uses.len() / 2),
-            fans: Vec::new(),
-            fan_triangles: Vec::new(),
+            ..Self::of_nothing(positions)
         };
         for group in uses.chunk_by(|a, b| a.0 == b.0) {
             let vertices = group[0].0;
@@ -271,7 +282,31 @@ impl Topology {
         parts::find_cover(&mut topology, surface);
         topology.convex = if topology.bends() { None } else { convex::largest(&topology) };
         topology.bounds = Bounds::of(topology.parts.iter().flat_map(|part| [part.bounds.min, part.bounds.max]));
+        topology.sections = sections::cut(&topology, &vertices_of_sections);
+        if topology.sections.is_empty() && !topology.bends() {
+            topology.cones = ConeTree::new(&mut topology);
+        }
         Ok(topology)
+    }
+
+    /// Points without triangles.
+    fn of_nothing(positions: Vec<[f32; 3]>) -> Self {
+        Self {
+            positions,
+            triangles: Vec::new(),
+            part_of: Vec::new(),
+            parts: Vec::new(),
+            by_part: Vec::new(),
+            twins: Vec::new(),
+            convex: None,
+            bounds: Bounds::EMPTY,
+            sections: Vec::new(),
+            cones: None,
+            bend: None,
+            edges: Vec::new(),
+            fans: Vec::new(),
+            fan_triangles: Vec::new(),
+        }
     }
 
     /// Whether its vertices may move against each other.
@@ -288,20 +323,28 @@ impl Topology {
         pairs.chain(fans)
     }
 
+    /// The tree over the triangles of a large and rigid mesh of one section.
+    pub(crate) fn cones(&self) -> Option<&ConeTree> {
+        self.cones.as_ref()
+    }
+
+    /// [`Self::boundary`], without a look at edges that are balanced by how the tree's nodes face the light of `c`.
+    pub(crate) fn silhouette(&self, c: &[i8], states: Option<&[NodeFacing]>, mut emit: impl FnMut([u32; 2], i32)) {
+        let Some((tree, states)) = self.cones.as_ref().zip(states) else { return self.boundary(c, emit) };
+        tree.open_edges(states, &self.edges, |edge| edge.boundary(c, &mut emit));
+        self.fans.iter().for_each(|fan| self.boundary_of(fan, c, &mut emit));
+    }
+
     /// Signed multiplicity `m_e` of every edge where it is not zero, for the weights `c` of the triangles.
     pub fn boundary(&self, c: &[i8], mut emit: impl FnMut([u32; 2], i32)) {
-        for edge in &self.edges {
-            let [t, u] = edge.triangles;
-            let m = signed(c, t) + if u == NONE { 0 } else { signed(c, u) };
-            if m != 0 {
-                emit(edge.vertices, m);
-            }
-        }
-        for fan in &self.fans {
-            let m: i32 = self.at(fan).iter().map(|&t| signed(c, t)).sum();
-            if m != 0 {
-                emit(fan.vertices, m);
-            }
+        self.edges.iter().for_each(|edge| edge.boundary(c, &mut emit));
+        self.fans.iter().for_each(|fan| self.boundary_of(fan, c, &mut emit));
+    }
+
+    fn boundary_of(&self, fan: &Fan, c: &[i8], emit: &mut impl FnMut([u32; 2], i32)) {
+        let m: i32 = self.at(fan).iter().map(|&t| signed(c, t)).sum();
+        if m != 0 {
+            emit(fan.vertices, m);
         }
     }
 
@@ -354,6 +397,8 @@ impl Topology {
             + size_of_val(&*self.fans)
             + size_of_val(&*self.fan_triangles)
             + self.bend.as_ref().map_or(0, bend::Bend::bytes)
+            + self.cones.as_ref().map_or(0, ConeTree::bytes)
+            + self.sections.iter().map(|section| size_of_val(section) + section.topology.bytes()).sum::<usize>()
     }
 
     fn at(&self, fan: &Fan) -> &[u32] {
@@ -362,6 +407,14 @@ impl Topology {
 }
 
 impl Edge {
+    fn boundary(&self, c: &[i8], emit: &mut impl FnMut([u32; 2], i32)) {
+        let [t, u] = self.triangles;
+        let m = signed(c, t) + if u == NONE { 0 } else { signed(c, u) };
+        if m != 0 {
+            emit(self.vertices, m);
+        }
+    }
+
     fn known(&self) -> &[u32] {
         if self.triangles[1] == NONE { &self.triangles[..1] } else { &self.triangles }
     }

@@ -42,7 +42,7 @@ fn plan<'p>(
         Caster { topology, mesh: i as u64, world_from_object }
     };
     let casters: Vec<Caster<'_>> = topologies.iter().enumerate().map(place).collect();
-    let lights = [ShadowLight { kind: LightKind::Point { position: light, range: f64::INFINITY }, excluded: &[] }];
+    let lights = [ShadowLight::new(LightKind::Point { position: light, range: f64::INFINITY })];
     let steps = Steps { silhouettes, off_screen: false, ..Technique::Mcguire.steps() };
     let frame = Input { view, casters: &casters, lights: &lights, receivers: &[], steps, counting: Counting::Verdict };
     planner.plan_extracting(&frame, &vec![true; casters.len()]).unwrap()

@@ -6,7 +6,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use zfail_plan::bounds::Bounds;
 use zfail_plan::casting::{self, Casting};
 use zfail_plan::light::LightKind;
-use zfail_plan::plan::{Caster, Counting, FramePlan, Input, Planner, ShadowLight, Technique};
+use zfail_plan::plan::{Caster, Counting, FramePlan, Input, Planner, ShadowLight, Steps, Technique};
 use zfail_plan::stack::{self, Body, Outline, Work};
 use zfail_plan::topology::Topology;
 use zfail_plan::view::{Projection, View};
@@ -90,13 +90,14 @@ fn plan(meshes: &[Topology], light: LightKind, counting: Counting) -> FramePlan 
         .collect();
     let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
     let view = View::new(DAffine3::IDENTITY, projection, [64, 64]);
-    let lights = [ShadowLight { kind: light, excluded: &[] }];
+    let lights = [ShadowLight::new(light)];
     let frame = Input {
         view: &view,
         casters: &casters,
         lights: &lights,
         receivers: &[],
-        steps: Technique::Auto.into(),
+        // Sections would leave out caps of some sheets.
+        steps: Steps { by_section: false, ..Technique::Auto.steps() },
         counting,
     };
     let mut planner = Planner::new();
@@ -140,7 +141,7 @@ fn a_deep_stack_of_casters_is_divided_between_casters() {
 fn a_change_of_projection_keeps_deep_stacks_divided() {
     let topology = topologies(&[sheets(1000)]).remove(0);
     let casters = [Caster { topology: &topology, mesh: 1, world_from_object: DAffine3::IDENTITY }];
-    let lights = [ShadowLight { kind: lamp(), excluded: &[] }];
+    let lights = [ShadowLight::new(lamp())];
     let mut planner = Planner::new();
     for projection in [
         Projection::Perspective { yfov: 1.0, near: 0.1, far: None },
@@ -167,7 +168,7 @@ fn bounds_without_extent_do_no_harm() {
 fn a_change_in_the_number_of_lights_keeps_deep_stacks_divided() {
     let topology = topologies(&[sheets(1000)]).remove(0);
     let casters = [Caster { topology: &topology, mesh: 1, world_from_object: DAffine3::IDENTITY }];
-    let lights = [ShadowLight { kind: lamp(), excluded: &[] }, ShadowLight { kind: sun(), excluded: &[] }];
+    let lights = [ShadowLight::new(lamp()), ShadowLight::new(sun())];
     let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
     let view = View::new(DAffine3::IDENTITY, projection, [64, 64]);
     let mut planner = Planner::new();
@@ -216,7 +217,7 @@ fn batches_of_rings(count: u32, step: DVec3, light: LightKind) -> usize {
     let world_from_view = DAffine3::from_translation(DVec3::new(0.0, 40.0, 90.0));
     let projection = Projection::Perspective { yfov: 1.5, near: 0.1, far: None };
     let view = View::new(world_from_view, projection, [64, 64]);
-    let lights = [ShadowLight { kind: light, excluded: &[] }];
+    let lights = [ShadowLight::new(light)];
     let (steps, counting) = (Technique::EverittKilgard.into(), Counting::Verdict);
     let frame = Input { view: &view, casters: &casters, lights: &lights, receivers: &[], steps, counting };
     Planner::new().plan(&frame).unwrap().lights[0].batches.len()

@@ -33,6 +33,8 @@ pub struct LightFigures {
     pub culled: BTreeMap<&'static str, u32>,
     /// Casters in case 1 (z-pass), 2 (z-fail without light cap) and 3 (z-fail with it) of McGuire et al. 2003.
     pub cases: [u32; 3],
+    /// The same by sections of meshes that have several parts; a caster that is one piece counts as one.
+    pub sections: SectionFigures,
     /// Casters whose silhouettes the device found; their triangles and vertices are not counted here.
     pub extracted: u32,
     /// Sides in sight that were counted by tiles instead of being rasterised.
@@ -60,4 +62,13 @@ pub struct TriangleFigures {
     pub dark_cap: u32,
     /// Near end.
     pub light_cap: u32,
+}
+
+/// What became of sections of meshes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct SectionFigures {
+    /// All that were decided on.
+    pub considered: u32,
+    /// Those with a volume, by case.
+    pub cases: [u32; 3],
 }

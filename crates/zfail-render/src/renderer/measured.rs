@@ -6,6 +6,7 @@ use crate::passes::attribute_pass::AttributePass;
 use crate::passes::mask_pass::{Mask, MaskPass};
 use crate::passes::shadow_pass::ShadowPass;
 use crate::passes::targets::Attributes;
+use crate::scene::lights::FrameLight;
 use crate::{AovKind, Aovs, RenderError, Settings, output::attribute_outputs};
 use zfail::Counting;
 use zfail_plan::view::View;
@@ -60,7 +61,7 @@ impl Renderer<'_> {
                 continue;
             }
             if settings.shadows {
-                let lights: Vec<_> = chosen.iter().map(|&l| (l, self.scene.lights[l].kind)).collect();
+                let lights: Vec<_> = chosen.iter().map(|&l| FrameLight::new(l, &self.scene.lights[l])).collect();
                 let readable = targets.stored_depth.is_some();
                 self.scene.plan(gpu, view, &lights, settings, counting, None, readable)?;
             }

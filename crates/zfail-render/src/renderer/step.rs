@@ -10,9 +10,8 @@ use crate::passes::further_pass::FurtherPass;
 use crate::passes::pipeline::{cleared, cleared_depth, continued, read_only};
 use crate::passes::verdict_pass::{Verdict, VerdictPass, VerdictTargets};
 use crate::scene::gpu_data::LightRecord;
-use crate::{RenderError, Settings, output::tone_map, scene::lights};
+use crate::{RenderError, Settings, output::tone_map, scene::lights::FrameLight};
 use half::f16;
-use zfail_plan::light::LightKind;
 use zfail_plan::view::View;
 
 impl Renderer<'_> {
@@ -22,7 +21,7 @@ impl Renderer<'_> {
         &mut self,
         view: &View,
         active: &[usize],
-        kinds: &[LightKind],
+        frame_lights: &[FrameLight],
         exposed: &Exposed,
         part: &Part,
         added: bool,
@@ -49,7 +48,7 @@ impl Renderer<'_> {
             view,
             &shading,
             scene.draws.order.iter().map(|&i| &scene.instances[i].world_from_object),
-            |l, slot| lights::reaches(&kinds[lights[l]], &scene.instance_bounds[scene.draws.order[slot]]),
+            |l, slot| frame_lights[lights[l]].reaches(&scene.instance_bounds[scene.draws.order[slot]]),
         )?;
         let targets = self.targets.as_mut().ok_or_else(no_targets)?;
         // Blended surfaces have a verdict of their own: that on the nearest of them.

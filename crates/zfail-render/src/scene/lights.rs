@@ -1,7 +1,7 @@
 //! Lights as shaders want them: in view space, scaled to the range of half floats.
 
 use crate::scene::gpu_data::LightRecord;
-use zfail_plan::bounds::Bounds;
+use zfail_plan::bounds::{Bounds, OrientedBox};
 use zfail_plan::glam::DVec3;
 use zfail_plan::light::LightKind;
 use zfail_plan::scissor;
@@ -80,10 +80,56 @@ pub fn greatest_reflectance(roughness: f64) -> f64 {
     (1.0 + 0.5 / (a * a * a)) / std::f64::consts::PI
 }
 
+/// A light of the scene as one frame takes it: how far it matters there.
+#[derive(Clone, Copy, Debug)]
+pub struct FrameLight {
+    /// Which of the scene's lights.
+    pub index: usize,
+    /// Placed, with the range that matters.
+    pub kind: LightKind,
+    /// Beyond which it lights nothing.
+    pub bounds: Option<OrientedBox>,
+}
+
+impl FrameLight {
+    /// Light number `index` of a scene, to its whole extent.
+    pub fn new(index: usize, light: &Light) -> Self {
+        Self { index, kind: light.kind, bounds: light.bounds() }
+    }
+
+    /// As far as it matters to a picture of that precision.
+    pub fn effective(index: usize, light: &Light, precision: &Precision) -> Self {
+        Self { kind: effective(light, precision), ..Self::new(index, light) }
+    }
+
+    /// Whether it reaches anything within `bounds` (world space).
+    pub fn reaches(&self, bounds: &Bounds) -> bool {
+        let in_range = match self.kind {
+            LightKind::Point { position, range } | LightKind::Spot { position, range, .. } => {
+                bounds.distance_squared(position) <= range * range
+            }
+            LightKind::Directional { .. } => true,
+        };
+        in_range && self.bounds.is_none_or(|light| light.meets(bounds))
+    }
+
+    /// Whether it reaches anything that `view` shows.
+    pub fn is_visible(&self, view: &View) -> bool {
+        let in_range = match self.kind {
+            LightKind::Point { position, range } | LightKind::Spot { position, range, .. } if range.is_finite() => {
+                scissor::of_ball(view, position - view.eye(), range).is_some()
+            }
+            _ => true,
+        };
+        let corners = self.bounds.map(|light| light.relative_to(view.eye()).corners().map(|c| c.extend(1.0)));
+        in_range && corners.is_none_or(|corners| scissor::of_points(view, &corners).is_some())
+    }
+}
+
 /// `light`'s kind as far as it matters to a picture: its range is not longer than the distance beyond which what any
 /// surface reflects of it is less than `precision` shows (McGuire et al. 2003, section 4, on a light's bounds). What is
 /// computed per pixel keeps the range of the file, by which the light fades.
-pub fn effective(light: &Light, precision: &Precision) -> LightKind {
+fn effective(light: &Light, precision: &Precision) -> LightKind {
     let peak = f64::from(light.color.into_iter().fold(0.0, f32::max)) * f64::from(light.intensity);
     let share = precision.pre_exposure * precision.reflectance / precision.step;
     // Not a number where nothing is known: then the file's range stands.
@@ -96,33 +142,12 @@ pub fn effective(light: &Light, precision: &Precision) -> LightKind {
             light.kind.range().unwrap_or(f64::INFINITY) * (last as f64 / (samples - 1).max(1) as f64)
         }
     };
-    let radius = radius.min(light.shape.half_extents.map_or(f64::INFINITY, DVec3::length));
     match light.kind {
         LightKind::Point { position, range } => LightKind::Point { position, range: range.min(radius) },
         LightKind::Spot { position, direction, range, inner, outer } => {
             LightKind::Spot { position, direction, range: range.min(radius), inner, outer }
         }
         directional @ LightKind::Directional { .. } => directional,
-    }
-}
-
-/// Whether a light of `kind` reaches anything within `bounds` (world space).
-pub fn reaches(kind: &LightKind, bounds: &Bounds) -> bool {
-    match *kind {
-        LightKind::Point { position, range } | LightKind::Spot { position, range, .. } => {
-            bounds.distance_squared(position) <= range * range
-        }
-        LightKind::Directional { .. } => true,
-    }
-}
-
-/// Whether a light of `kind` reaches anything that `view` shows.
-pub fn is_visible(kind: &LightKind, view: &View) -> bool {
-    match *kind {
-        LightKind::Point { position, range } | LightKind::Spot { position, range, .. } if range.is_finite() => {
-            scissor::of_ball(view, position - view.eye(), range).is_some()
-        }
-        _ => true,
     }
 }
 
@@ -162,6 +187,8 @@ pub fn pre_exposure<'l>(lights: impl Iterator<Item = &'l Light>, bounds: &Bounds
 #[cfg(test)]
 mod tests {
     use super::*;
+    use zfail_plan::glam::DAffine3;
+    use zfail_plan::view::Projection;
     use zfail_scene::LightShape;
 
     fn sun(lux: f32) -> Light {
@@ -220,9 +247,19 @@ mod tests {
         assert_eq!(curved(&[0.0, 1.0]), 12.0);
         assert_eq!(curved(&[1.0, 0.5, 0.0, 0.0, 0.0]), 6.0, "light fades between its last sample and the next");
         assert_eq!(curved(&[0.0, 1e-9, 0.0]), 0.0);
-        let mut boxed = lamp(8.0, 9.0);
-        boxed.shape.half_extents = Some(DVec3::new(2.0, 1.0, 2.0));
-        assert_eq!(reach(&boxed, &precision), 3.0);
+    }
+
+    #[test]
+    fn a_box_ends_what_is_lit() {
+        let kind = LightKind::Point { position: DVec3::ZERO, range: f64::INFINITY };
+        let half_axes = [DVec3::X * 2.0, DVec3::Y, DVec3::Z * 2.0];
+        let light = FrameLight { index: 0, kind, bounds: Some(OrientedBox { center: DVec3::ZERO, half_axes }) };
+        let around = |p: DVec3| Bounds { min: p - 0.1, max: p + 0.1 };
+        assert!(light.reaches(&around(DVec3::new(2.05, 0.5, 0.0))) && !light.reaches(&around(DVec3::Y * 1.2)));
+        let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
+        let facing = |z: f64| View::new(DAffine3::from_translation(DVec3::new(0.0, 0.0, z)), projection, [9, 9]);
+        assert!(light.is_visible(&facing(9.0)) && !light.is_visible(&facing(-2.5)));
+        assert!(FrameLight { bounds: None, ..light }.is_visible(&facing(-2.5)));
     }
 
     #[test]

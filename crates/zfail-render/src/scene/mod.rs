@@ -17,15 +17,15 @@ pub mod textures;
 use crate::scene::draw_list::{DrawList, material_slots};
 use crate::scene::geometry::MeshBuffers;
 use crate::scene::layouts::Layouts;
+use crate::scene::lights::FrameLight;
 use crate::scene::shapes::Shapes;
 use crate::scene::surroundings::Surroundings;
 use crate::{Gpu, RenderError, Settings};
 use glam::DVec3;
 use zfail::{Caster, Counting, Frame, LightStats, MeshId, ShadowLight, Shadows, Silhouettes, Tiles};
 use zfail_plan::bounds::Bounds;
-use zfail_plan::light::LightKind;
 use zfail_plan::view::View;
-use zfail_scene::{Instance, Light, Material, Mesh, Pose, Scene};
+use zfail_scene::{Instance, Light, Material, Mesh, Pose, Receivers, Scene};
 
 /// Uploaded meshes and materials, registered casters, and the plain data that frames are made from.
 #[derive(Debug)]
@@ -45,6 +45,9 @@ pub struct SceneOnGpu {
     pub instance_bounds: Vec<Bounds>,
     /// Of every mesh, object space.
     mesh_bounds: Vec<Bounds>,
+    receivers: Receivers,
+    /// Boxes around everything that can be seen, world space.
+    receiver_boxes: Vec<Bounds>,
     pub surroundings: Surroundings,
     /// Stops, where those of the lights are known.
     pub exposure: Option<f32>,
@@ -96,6 +99,8 @@ impl SceneOnGpu {
             bounds: Bounds::EMPTY,
             instance_bounds: Vec::new(),
             mesh_bounds: scene.meshes.iter().map(Mesh::bounds).collect(),
+            receivers: Receivers::new(scene),
+            receiver_boxes: Vec::new(),
             surroundings: Surroundings::new(gpu, scene)?,
             exposure: scene.exposure,
             emission,
@@ -125,6 +130,7 @@ impl SceneOnGpu {
             if let Some(caster) = self.caster_meshes[bent.mesh] {
                 self.shadows.move_vertices(caster, &bent.positions)?;
             }
+            self.receivers.bend(bent.mesh, &bent.positions);
             self.mesh_bounds[bent.mesh] = Bounds::of(bent.positions.iter().map(|p| DVec3::from(p.map(f64::from))));
         }
         for (instance, &world_from_object) in self.instances.iter_mut().zip(&pose.instances) {
@@ -215,6 +221,7 @@ impl SceneOnGpu {
             }
             self.instance_bounds.push(world);
         }
+        self.receivers.place(&self.instances, &mut self.receiver_boxes);
     }
 
     /// Orders what is drawn for `view`.
@@ -237,14 +244,14 @@ impl SceneOnGpu {
         }
     }
 
-    /// Plans and uploads the volumes of lights, each taken as a kind, with shadows on `ground` beside those on surfaces, and
+    /// Plans and uploads the volumes of lights, with shadows on `ground` beside those on surfaces, and
     /// chooses what of them is counted by tiles if the depth can be read.
     #[expect(clippy::too_many_arguments, reason = "what a frame's shadows depend on")]
     pub fn plan(
         &mut self,
         gpu: &Gpu,
         view: &View,
-        chosen: &[(usize, LightKind)],
+        chosen: &[FrameLight],
         settings: &Settings,
         counting: Counting,
         ground: Option<Bounds>,
@@ -252,19 +259,26 @@ impl SceneOnGpu {
     ) -> Result<Vec<LightStats>, RenderError> {
         let excluded: Vec<Vec<usize>> = chosen
             .iter()
-            .map(|&(l, _)| self.lights[l].excluded.iter().filter_map(|&instance| self.caster_of[instance]).collect())
+            .map(|light| {
+                self.lights[light.index].excluded.iter().filter_map(|&instance| self.caster_of[instance]).collect()
+            })
             .collect();
-        let lights: Vec<ShadowLight<'_>> =
-            chosen.iter().zip(&excluded).map(|(&(_, kind), excluded)| ShadowLight { kind, excluded }).collect();
+        let lights: Vec<ShadowLight<'_>> = chosen
+            .iter()
+            .zip(&excluded)
+            .map(|(light, excluded)| ShadowLight::new(light.kind).within(light.bounds).excluding(excluded))
+            .collect();
         let steps = settings.steps();
-        let boxes = [self.bounds, ground.unwrap_or(Bounds::EMPTY)];
-        let receivers = if ground.is_some() { &boxes[..] } else { &boxes[..1] };
+        let surfaces = self.receiver_boxes.len();
+        self.receiver_boxes.extend(ground);
         let silhouettes = self.posed && steps.silhouettes == Silhouettes::WhereCheaper;
         if silhouettes || readable && steps.tiles == Tiles::WhereCheaper {
             self.shadows.set_cost_model(gpu.costs());
         }
-        let frame = Frame::new(view, &self.casters, &lights).receivers(receivers).steps(steps).counting(counting);
-        let prepared = self.shadows.prepare(&frame.tile_pass(readable))?;
+        let frame = Frame::new(view, &self.casters, &lights).receivers(&self.receiver_boxes).steps(steps);
+        let prepared = self.shadows.prepare(&frame.counting(counting).tile_pass(readable));
+        self.receiver_boxes.truncate(surfaces);
+        let prepared = prepared?;
         Ok((0..chosen.len()).map(|light| prepared.stats(light)).collect())
     }
 }

@@ -4,7 +4,7 @@ use crate::support::{add, assert_same, at, close, gpu, light, look, matt, pictur
 use zfail_plan::glam::{DAffine3, DMat3, DVec3};
 use zfail_plan::light::LightKind;
 use zfail_plan::view::{Projection, View};
-use zfail_render::{AovKind, Gpu, RenderError, Renderer, Settings};
+use zfail_render::{AovKind, Gpu, RenderError, Renderer, Settings, Technique};
 use zfail_scene::{AlphaMode, Filter, Image, Light, LightShape, Material, Pose, Scene, Texture, Wrap};
 
 const SIZE: [u32; 2] = [33, 33];
@@ -236,6 +236,32 @@ fn a_box_ends_light_and_mask_along_its_own_axes() {
     assert!(mask(&scene).iter().all(|&m| m == 0), "the wall is behind the box");
     scene.lights[0].shape.half_extents = None;
     assert!(mask(&scene).iter().all(|&m| m == 255));
+}
+
+#[test]
+fn the_box_of_a_light_bounds_its_casters_too() {
+    let Some(gpu) = gpu() else { return };
+    let scene = zfail_builtin::scene("lantern").expect("a built-in scene");
+    let view = scene.cameras[0].view([160, 90], &scene.bounds());
+    let drawn = |scene: &Scene, technique| {
+        let settings = Settings { technique, lights: Some(vec![1]), ..Settings::default() };
+        let mut renderer = Renderer::new(&gpu, scene).expect("a renderer");
+        let (_, stats) = renderer.picture(&view, &settings).expect("a picture");
+        let mask = renderer.aovs(&view, &settings, &[AovKind::Shadow]).expect("masks").shadow.remove(0);
+        let beyond = stats.lights[0].culled.get("out of range").copied().unwrap_or(0);
+        (stats.lights[0].casters - beyond, mask)
+    };
+    let (all, truth) = drawn(&scene, Technique::EverittKilgard);
+    let (few, mask) = drawn(&scene, Technique::Mcguire);
+    assert_eq!((all, few), (8, 3));
+    assert!(mask == truth && mask.contains(&255));
+    // The ball around the box holds more.
+    let mut ball = scene.clone();
+    let half = ball.lights[1].shape.half_extents.take().expect("a box");
+    ball.lights[1].kind =
+        LightKind::Point { position: ball.lights[1].kind.homogeneous().truncate(), range: half.length() };
+    let (more, mask) = drawn(&ball, Technique::Mcguire);
+    assert!(more > few && mask != truth, "{more}");
 }
 
 #[test]

@@ -122,7 +122,7 @@ fn tiled(scene: &Scene, near: u8, fault: Fault) -> Vec<u8> {
         .zip(&scene.meshes)
         .map(|((mesh, topology), &(_, world_from_object))| plan::Caster { topology, mesh, world_from_object })
         .collect();
-    let lights = [ShadowLight { kind: scene.light, excluded: &[] }];
+    let lights = [ShadowLight::new(scene.light)];
     let (technique, counting) = (Technique::EverittKilgard, Counting::Raw);
     let mut planner = Planner::new();
     let plan = planner

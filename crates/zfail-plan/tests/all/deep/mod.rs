@@ -65,7 +65,7 @@ impl Tower {
             .collect();
         let projection = Projection::Perspective { yfov: 1.0, near: 0.1, far: None };
         let view = View::new(DAffine3::from_translation(DVec3::Z * 20.0), projection, [320, 200]);
-        let lights = [ShadowLight { kind: self.light, excluded: &[] }];
+        let lights = [ShadowLight::new(self.light)];
         let (steps, counting) = (Technique::EverittKilgard.into(), Counting::Verdict);
         let frame = Input { view: &view, casters: &casters, lights: &lights, receivers: &[], steps, counting };
         let mut planner = Planner::new();
