@@ -5,6 +5,7 @@ mod bench;
 mod compare;
 mod compare_page;
 mod documents;
+mod floors;
 mod frames;
 mod guide;
 mod info;
