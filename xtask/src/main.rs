@@ -5,8 +5,11 @@
 
 mod browser;
 mod checks;
+mod features;
 mod figures;
 mod fuzz;
+mod metadata;
+mod oldest;
 mod packages;
 mod setup;
 mod wasm;

@@ -10,6 +10,7 @@ mod frames;
 mod guide;
 mod info;
 mod overlays;
+mod readmes;
 mod render;
 mod support;
 mod usage;
