@@ -11,6 +11,10 @@ impl Size {
     /// No GPU of today makes larger images; the renderer knows what the one at hand can do.
     const MAX_SIDE: u32 = 16_384;
 
+    /// Reads WIDTHxHEIGHT.
+    ///
+    /// # Errors
+    /// If it is none, or too large for any device.
     pub fn parse(text: &str) -> Result<Self, String> {
         let parsed = text.split_once(['x', 'X']).and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
         let Some([width, height]) = parsed else {

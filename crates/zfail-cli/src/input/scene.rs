@@ -11,7 +11,7 @@ use zfail_scene::{Animated, GroundChoice, MaskCasting, Setting, cut};
 const BUILTIN: &str = "builtin:";
 
 /// Loads a file as it is, with its animations and what it says about itself, or generates a built-in scene; masked
-/// surfaces get the shadows that `masks` asks for.
+/// surfaces get the shadows that `loading` asks for.
 ///
 /// # Errors
 /// If the file cannot be used, or there is no such built-in scene.

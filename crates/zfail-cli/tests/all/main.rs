@@ -2,6 +2,7 @@
 
 mod assets;
 mod bench;
+mod benchmarks;
 mod compare;
 mod compare_page;
 mod documents;

@@ -15,6 +15,10 @@ pub struct PictureFile {
 }
 
 impl PictureFile {
+    /// Reads a file's name.
+    ///
+    /// # Errors
+    /// If its extension is that of no picture.
     pub fn parse(text: &str) -> Result<Self, String> {
         let path = PathBuf::from(text);
         let format = Format::of(&path).ok_or("the name must end in .png or .exr")?;
@@ -34,6 +38,10 @@ pub struct AovFiles {
 }
 
 impl AovFiles {
+    /// Reads KIND=PATH.
+    ///
+    /// # Errors
+    /// If there is no such kind, or it does not go into such a file.
     pub fn parse(text: &str) -> Result<Self, String> {
         let Some((name, path)) = text.split_once('=') else {
             return Err("write it as KIND=PATH, such as shadow=masks".to_owned());
