@@ -1,6 +1,6 @@
 //! Every check of the workspace, one after the other, with a summary at the end.
 
-use crate::{browser, cargo, fuzz, packages, wasm};
+use crate::{browser, cargo, features, fuzz, oldest, packages, wasm};
 use std::env;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -15,7 +15,7 @@ struct Check {
 }
 
 /// In the order in which a newcomer wants to hear of a fault. All of them build the dev profile and share its artefacts.
-const CHECKS: [Check; 7] = [
+const CHECKS: [Check; 6] = [
     Check { name: "format", component: Some("fmt"), commands: &[&["fmt", "--all", "--check"]], environment: &[] },
     Check {
         name: "lints",
@@ -41,22 +41,6 @@ const CHECKS: [Check; 7] = [
         name: "documentation examples",
         component: None,
         commands: &[&["test", "--workspace", "--doc"]],
-        environment: &[],
-    },
-    Check {
-        // Every feature alone, where a missing `cfg` would show; with all of them the workspace is built above.
-        name: "features",
-        component: None,
-        commands: &[
-            &["check", "--package", "zfail-plan", "--no-default-features"],
-            &["check", "--package", "zfail", "--no-default-features"],
-            &["check", "--package", "zfail", "--no-default-features", "--features", "rayon"],
-            &["check", "--package", "zfail", "--no-default-features", "--features", "wgpu-default"],
-            &["check", "--package", "zfail-files", "--no-default-features"],
-            &["check", "--package", "zfail-cli", "--no-default-features"],
-            &["check", "--package", "zfail-cli", "--no-default-features", "--features", "codecs"],
-            &["check", "--package", "zfail-cli", "--no-default-features", "--features", "view"],
-        ],
         environment: &[],
     },
 ];
@@ -103,7 +87,16 @@ pub fn run(pages: Result<(), String>) -> Result<(), String> {
         let outcome = if check.name == TESTS { tests(without_browser)? } else { check.run()? };
         note(check.name, outcome, start);
     }
+    let start = Instant::now();
+    note("features", outcome(features::run()), start);
+
     // What a bare machine may lack and cannot always get is told, and fails nothing.
+    let start = Instant::now();
+    if oldest::is_installed() {
+        note("oldest compiler", outcome(oldest::run()), start);
+    } else {
+        println!("\nRust {} is not installed: what is promised to build with it is not checked", oldest::VERSION);
+    }
     let start = Instant::now();
     if browser::runs("c++") {
         note(FUZZ.name, FUZZ.run()?, start);

@@ -4,11 +4,10 @@
 //! nothing but the guide's own scenes; one of the files that it leaves there is the figure. Beneath its figure the guide shows the command as it stands here, without
 //! the options that only fit the picture into the page.
 
-use crate::{cargo, root};
-use std::ffi::OsStr;
+use crate::program::{Program, create, example};
+use crate::root;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
 
 /// A picture of the guide.
 struct Figure {
@@ -103,7 +102,7 @@ pub fn run(filter: Option<&str>) -> Result<(), String> {
     if !FIGURES.iter().map(|figure| figure.name).chain([TABLE]).any(wanted) {
         return Err(format!("no figure has '{}' in its name", filter.unwrap_or_default()));
     }
-    let program = build()?;
+    let program = Program::build(&[])?;
     let figures = guide().join("figures");
     create(&figures)?;
     for figure in FIGURES.iter().filter(|figure| wanted(figure.name)) {
@@ -118,7 +117,7 @@ pub fn run(filter: Option<&str>) -> Result<(), String> {
 
 impl Figure {
     /// Runs the command in an empty folder; the path of the file that is the figure.
-    fn make(&self, program: &Path) -> Result<PathBuf, String> {
+    fn make(&self, program: &Program) -> Result<PathBuf, String> {
         let (options, file): (&[&str], _) = match self.kind {
             Kind::Picture => (&["--size", PAGE, "--samples", "4", "-o", "picture.png"], "picture.png"),
             Kind::Verdict => (&["--size", PAGE, "-o", "picture.png"], "light-0.png"),
@@ -126,19 +125,19 @@ impl Figure {
         };
         let folder = scratch()?;
         let words = self.command.split_whitespace().chain(options.iter().copied());
-        execute(program, &folder, words.map(OsStr::new))?;
+        program.run(&folder, words)?;
         let made = folder.join(file);
         if made.is_file() { Ok(made) } else { Err(format!("`zfail {}` wrote no {file}", self.command)) }
     }
 }
 
 /// The table of wrong pixels, from what the program writes for programs.
-fn table(program: &Path) -> Result<(), String> {
+fn table(program: &Program) -> Result<(), String> {
     let folder = scratch()?;
     let mut results = Vec::new();
     for (i, scene) in HARD_SCENES.iter().enumerate() {
         let output = i.to_string();
-        execute(program, &folder, ["compare", scene, "--size", "160x100", "-o", &output].map(OsStr::new))?;
+        program.run(&folder, ["compare", scene, "--size", "160x100", "-o", &output])?;
         results.push(folder.join(output).join("compare.json"));
     }
     let text = example("compare_table", &results)?;
@@ -147,39 +146,6 @@ fn table(program: &Path) -> Result<(), String> {
     fs::write(&file, text).map_err(|e| format!("cannot write {}: {e}", file.display()))?;
     println!("{}", file.display());
     Ok(())
-}
-
-/// Builds the program; its path.
-fn build() -> Result<PathBuf, String> {
-    let output = cargo()
-        .args(["build", "--package", "zfail-cli", "--message-format", "json-render-diagnostics"])
-        .stderr(Stdio::inherit())
-        .output()
-        .map_err(|e| format!("cannot start cargo: {e}"))?;
-    // The one artefact with an executable is the program.
-    let text = String::from_utf8_lossy(&output.stdout);
-    let path = text.split("\"executable\":\"").nth(1).and_then(|rest| rest.split('"').next());
-    path.filter(|_| output.status.success()).map(PathBuf::from).ok_or_else(|| "the program was not built".to_owned())
-}
-
-/// Runs an example of the program's crate on files; what it prints.
-fn example<'a>(name: &str, files: impl IntoIterator<Item = &'a PathBuf>) -> Result<Vec<u8>, String> {
-    let mut command = cargo();
-    command.args(["run", "--quiet", "--package", "zfail-cli", "--example", name, "--"]).args(files);
-    let output = command.output().map_err(|e| format!("cannot start cargo: {e}"))?;
-    if output.status.success() { Ok(output.stdout) } else { Err(failure(&command, &output)) }
-}
-
-/// Runs the program in a folder.
-fn execute<'a>(program: &Path, folder: &Path, arguments: impl IntoIterator<Item = &'a OsStr>) -> Result<(), String> {
-    let mut command = Command::new(program);
-    command.args(arguments).arg("--quiet").current_dir(folder).env("NODEVICE_SELECT", "1");
-    let output = command.output().map_err(|e| format!("cannot start {}: {e}", program.display()))?;
-    if output.status.success() { Ok(()) } else { Err(failure(&command, &output)) }
-}
-
-fn failure(command: &Command, output: &Output) -> String {
-    format!("{command:?} failed ({}): {}", output.status, String::from_utf8_lossy(&output.stderr))
 }
 
 /// A folder with nothing but the guide's own scenes.
@@ -200,10 +166,6 @@ fn copy_files(from: &Path, to: &Path) -> Result<(), String> {
         fs::copy(entry.path(), to.join(entry.file_name())).map_err(fault)?;
     }
     Ok(())
-}
-
-fn create(folder: &Path) -> Result<(), String> {
-    fs::create_dir_all(folder).map_err(|e| format!("cannot create {}: {e}", folder.display()))
 }
 
 fn guide() -> PathBuf {

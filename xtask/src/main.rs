@@ -1,13 +1,18 @@
 //! Set-up, demo and tests: `cargo xtask demo` and `cargo xtask test`; fuzzing, `cargo xtask fuzz`; the guide's figures,
-//! `cargo xtask figures`.
+//! `cargo xtask figures`; the page of costs, `cargo xtask benchmarks`.
 //!
 //! Only the standard library is used, so that the first of these commands on a new machine starts within seconds.
 
+mod benchmarks;
 mod browser;
 mod checks;
+mod features;
 mod figures;
 mod fuzz;
+mod metadata;
+mod oldest;
 mod packages;
+mod program;
 mod setup;
 mod wasm;
 
@@ -28,6 +33,8 @@ Commands:
          Fuzz the loaders, each target for so long; needs a C++ compiler
   figures [NAME]
          Make the figures and the table of docs/guide anew, or those with NAME in their names
+  benchmarks [small]
+         Measure what docs/benchmarks.md tells and write it anew; 'small' tries all of it on little, into target/benchmarks
 
 The first two install a software Vulkan driver first if the machine has no graphics adapter; 'test' also a virtual display
 and a browser, for the tests of the viewer and of pages (Debian and Ubuntu, as root).";
@@ -44,6 +51,8 @@ fn main() -> ExitCode {
         ["wasm"] => wasm::run(),
         ["figures"] => setup::graphics_adapter().and_then(|()| figures::run(None)),
         ["figures", name] => setup::graphics_adapter().and_then(|()| figures::run(Some(name))),
+        ["benchmarks"] => setup::graphics_adapter().and_then(|()| benchmarks::run(false)),
+        ["benchmarks", "small"] => setup::graphics_adapter().and_then(|()| benchmarks::run(true)),
         ["help" | "-h" | "--help"] => {
             println!("{USAGE}");
             Ok(())

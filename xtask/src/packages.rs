@@ -4,9 +4,9 @@
 //! for a file beside its package does not.
 
 use crate::{cargo, root, succeeds};
-use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{self, Command};
+use std::{env, fs, io};
 
 /// In the order in which they are published: each after those that it needs.
 pub const PUBLISHED: [&str; 11] = [
@@ -34,16 +34,13 @@ pub fn run() -> Result<(), String> {
     pack.args(["package", "--no-verify", "--allow-dirty"]).args(packing);
     succeeds(&mut pack)?;
 
-    let scratch = std::env::temp_dir().join("zfail-packages");
-    let fault = |path: &Path, e: &std::io::Error| format!("cannot write {}: {e}", path.display());
-    if scratch.exists() {
-        fs::remove_dir_all(&scratch).map_err(|e| fault(&scratch, &e))?;
-    }
-    fs::create_dir_all(&scratch).map_err(|e| fault(&scratch, &e))?;
+    let fault = |path: &Path, e: &io::Error| format!("cannot write {}: {e}", path.display());
+    let scratch = Scratch::new().map_err(|e| format!("cannot make a temporary folder: {e}"))?;
+    let scratch = &scratch.0;
     let version = env!("CARGO_PKG_VERSION");
     for name in PUBLISHED {
         let package = root().join("target/package").join(format!("{name}-{version}.crate"));
-        succeeds(Command::new("tar").arg("-xzf").arg(&package).arg("-C").arg(&scratch))?;
+        succeeds(Command::new("tar").arg("-xzf").arg(&package).arg("-C").arg(scratch))?;
     }
     let workspace =
         fs::read_to_string(root().join("Cargo.toml")).map_err(|e| format!("cannot read Cargo.toml: {e}"))?;
@@ -52,9 +49,33 @@ pub fn run() -> Result<(), String> {
     let lock = scratch.join("Cargo.lock");
     fs::copy(root().join("Cargo.lock"), &lock).map_err(|e| fault(&lock, &e))?;
     let mut check = cargo();
-    // What others' crates have been built to is of use here, too.
+    // What others' crates have been built to is of use here, too; what ours are built to here never is again.
+    check.env("CARGO_INCREMENTAL", "0");
     check.args(["check", "--workspace", "--manifest-path"]).arg(&manifest).arg("--target-dir").arg(target());
     succeeds(&mut check)
+}
+
+/// A new folder outside of the workspace, gone again when this is dropped.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new() -> io::Result<Self> {
+        let mut number = 0;
+        loop {
+            let folder = env::temp_dir().join(format!("zfail-packages-{}-{number}", process::id()));
+            match fs::create_dir(&folder) {
+                Err(e) if e.kind() == io::ErrorKind::AlreadyExists => number += 1,
+                made => return made.map(|()| Self(folder)),
+            }
+        }
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        // What is left there is in nobody's way.
+        let _ = fs::remove_dir_all(&self.0);
+    }
 }
 
 /// A workspace of the unpacked packages that takes each from the others, and builds in the profiles of `workspace`.
@@ -74,7 +95,7 @@ fn target() -> PathBuf {
 
 #[cfg(test)]
 mod tests {
-    use super::{PUBLISHED, root, scratch_manifest};
+    use super::{PUBLISHED, Scratch, root, scratch_manifest};
     use std::fs;
 
     /// The manifests of the workspace's crates by name.
@@ -156,6 +177,16 @@ mod tests {
             assert!(read(table).contains(&row), "{table} has no row {row:?}");
         }
         assert!(!read("CONTRIBUTING.md").contains(&row), "the row is looked for");
+    }
+
+    #[test]
+    fn every_run_has_a_folder_of_its_own_and_leaves_none() {
+        let (a, b) = (Scratch::new().unwrap(), Scratch::new().unwrap());
+        assert!(a.0 != b.0 && a.0.is_dir() && !a.0.starts_with(root()));
+        fs::write(a.0.join("file"), "").unwrap();
+        let gone = a.0.clone();
+        drop(a);
+        assert!(!gone.exists() && b.0.is_dir());
     }
 
     #[test]

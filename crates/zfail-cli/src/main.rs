@@ -2,58 +2,29 @@
 //!
 //! In: a command line. Out: files, or text on standard output; notices and errors on standard error. Exit code 0 for
 //! done, 1 for failed, 2 for wrong usage.
+//!
+//! Floors, each of which knows only those below it: `cli` (the command line as a whole) -> `commands` (one each, with its own
+//! arguments) -> `input` (scenes) -> `groups` (arguments that several commands have) -> `output` (files) -> `console` (what is
+//! said) -> `names` -> `error`.
 
-mod adapters;
-mod args;
-mod bench;
-mod compare;
+mod cli;
+mod commands;
 mod console;
-mod contact_sheet;
-mod encode;
 mod error;
-mod gallery;
-mod html;
-mod info;
+mod groups;
 mod input;
-mod judged;
-mod mesa;
 mod names;
-mod numbering;
 mod output;
-mod render;
-mod verify;
-#[cfg(feature = "view")]
-mod view;
 
-use args::{Cli, Command};
-use clap::Parser;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    mesa::silence();
-    let result = match Cli::try_parse() {
-        Ok(cli) => console::contain_faults(|| run(&cli.command)),
-        Err(help_or_error) => console::explain(&help_or_error),
-    };
-    match result {
+    console::mesa::silence();
+    match cli::run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             console::error(&error);
             error.exit_code()
         }
-    }
-}
-
-fn run(command: &Command) -> Result<(), error::Error> {
-    match command {
-        Command::Render(args) => render::run(args),
-        Command::Info(args) => info::run(args),
-        Command::Bench(args) => bench::run(args),
-        Command::Verify(args) => verify::run(args),
-        Command::Compare(args) => compare::run(args),
-        Command::Adapters(args) => adapters::run(args),
-        Command::Gallery(args) => gallery::run(args),
-        #[cfg(feature = "view")]
-        Command::View(args) => view::run(args),
     }
 }

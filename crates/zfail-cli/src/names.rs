@@ -63,9 +63,9 @@ mod tests {
 
     #[test]
     fn a_number_is_an_index_and_then_a_name() {
-        assert_eq!(index_of("camera", "1", &["1", "0"]), Ok(1));
-        assert_eq!(index_of("camera", "7", &["a", "7"]), Ok(1));
-        assert_eq!(index_of("camera", "b", &["a", "b"]), Ok(1));
+        assert_eq!(index_of("camera", "1", &["1", "0"]).unwrap(), 1);
+        assert_eq!(index_of("camera", "7", &["a", "7"]).unwrap(), 1);
+        assert_eq!(index_of("camera", "b", &["a", "b"]).unwrap(), 1);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Shadow methods that the papers tell of, runnable side by side: those of [`Method::ALL`].
+//! Shadow methods that the papers tell of, runnable side by side. They are those of [`Method::ALL`].
 //!
 //! In: a [`Scene`](zfail_scene::Scene), a [`View`](zfail_plan::view::View) and one of its lights. Out: a
 //! [`Shadow`]: a mask of what the light reaches, as [`zfail_render::Aovs::shadow`] has it, and what it cost.

@@ -1,4 +1,4 @@
-//! The interactive viewer.
+//! The interactive viewer of zfail: a window onto a scene, its shadows and its shadow volumes.
 //!
 //! In: a scene's name, and a [`Host`] that can load scenes. Out: a window, and files that the user saves.
 //!

@@ -2,13 +2,16 @@
 
 mod assets;
 mod bench;
+mod benchmarks;
 mod compare;
 mod compare_page;
 mod documents;
+mod floors;
 mod frames;
 mod guide;
 mod info;
 mod overlays;
+mod readmes;
 mod render;
 mod support;
 mod usage;
