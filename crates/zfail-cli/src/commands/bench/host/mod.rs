@@ -92,7 +92,9 @@ fn noop() -> Result<(wgpu::Device, wgpu::Queue), Error> {
     let failed = |what: &dyn std::fmt::Display| Error::failed(format!("no device for measuring the host: {what}"));
     let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
     let adapter = adapter.map_err(|e| failed(&e))?;
-    let descriptor = wgpu::DeviceDescriptor { required_limits: adapter.limits(), ..wgpu::DeviceDescriptor::default() };
+    let required_features = wgpu::Features::DEPTH32FLOAT_STENCIL8;
+    let required_limits = adapter.limits();
+    let descriptor = wgpu::DeviceDescriptor { required_features, required_limits, ..wgpu::DeviceDescriptor::default() };
     pollster::block_on(adapter.request_device(&descriptor)).map_err(|e| failed(&e))
 }
 
