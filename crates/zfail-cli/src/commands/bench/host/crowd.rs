@@ -90,7 +90,7 @@ impl Crowd {
         let lift = |caster: &mut Caster| caster.world_from_object.translation += on;
         let shift = |light: &mut ShadowLight<'_>| {
             if let LightKind::Point { position, .. } = &mut light.kind {
-                *position += on;
+                *position -= on;
             }
         };
         let all = self.moves == Moves::All;
