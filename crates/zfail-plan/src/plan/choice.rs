@@ -36,7 +36,7 @@ impl Choice {
     /// Takes what is the same for all lights of a frame.
     pub fn begin(&mut self, stage: &Stage<'_>) {
         if bounds_receivers(stage) {
-            self.receivers.fit(stage.input.receivers);
+            self.receivers.fit(stage.input.receivers, stage.placed.len());
         }
         self.threads.resize_with(parallel::pieces(stage.placed.len()), Thread::default);
     }

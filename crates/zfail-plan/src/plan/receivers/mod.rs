@@ -18,8 +18,10 @@ use crate::view::{Projection, View};
 use glam::{DVec2, DVec3, DVec4};
 use tree::Tree;
 
-/// Boxes that are looked into for one caster of one light; of the rest, what is within is not asked.
-const LOOKS: usize = 32;
+/// Boxes that are looked into for all casters of a light together, about; of the rest, what is within is not asked.
+const LOOKS: usize = 8192;
+/// The fewest and the most for one caster.
+const FEW_OR_MANY: [usize; 2] = [8, 32];
 
 /// What one light can reach of what the view shows.
 #[derive(Clone, Debug, Default)]
@@ -30,6 +32,8 @@ pub(super) struct Receivers {
     /// What is visible and reached lies within `dot(xyz, p) + w >= 0` for all of these.
     planes: Vec<DVec4>,
     eye: DVec3,
+    /// Boxes that are looked into for one caster.
+    looks: usize,
 }
 
 /// Memory for looking, which belongs to one thread at a time.
@@ -64,9 +68,11 @@ enum Side {
 }
 
 impl Receivers {
-    /// Takes the frame's boxes, in world space.
-    pub fn fit(&mut self, boxes: &[Bounds]) {
+    /// Takes the frame's boxes, in world space, for so many casters.
+    pub fn fit(&mut self, boxes: &[Bounds], casters: usize) {
         self.tree.fit(boxes);
+        let [few, many] = FEW_OR_MANY;
+        self.looks = (LOOKS / casters.max(1)).clamp(few, many);
     }
 
     /// Prepares for a light.
@@ -102,7 +108,7 @@ impl Receivers {
             let more = match (visible.side(planes), self.tree.children(n)) {
                 (Side::Outside, _) => None,
                 (Side::Inside, _) => Some(whole),
-                (Side::Across, Some(children)) if looks < LOOKS => {
+                (Side::Across, Some(children)) if looks < self.looks => {
                     looks += 1;
                     self.wait(looking, view, children);
                     continue;
@@ -241,7 +247,7 @@ mod tests {
                 (piece.max[cut % 3], other.min[cut % 3]) = (middle, middle);
                 boxes.extend([piece, other]);
             }
-            receivers.fit(&boxes);
+            receivers.fit(&boxes, 1);
             receivers.set(&view, &reach);
             let pixels = receivers.shadowed(&mut Looking::default(), &view, &corners, light);
             small += usize::from(pixels.is_none_or(|[_, _, w, h]| w * h < 4800));
