@@ -77,7 +77,13 @@ fn sampler() -> Scene {
     let place = |name: &str, mesh, matrix3: DMat3, casts_shadow| {
         let translation = DVec3::new(1e6 + 1.0 / 3.0, 0.1, -7.0);
         let world_from_object = DAffine3 { matrix3, translation };
-        Instance { name: name.into(), mesh, world_from_object, casts_shadow, receives_shadow: name.len() % 2 == 0 }
+        Instance {
+            name: name.into(),
+            mesh,
+            world_from_object,
+            casts_shadow,
+            receives_shadow: name.len().is_multiple_of(2),
+        }
     };
     let light = |name: &str, kind, excluded| Light {
         name: name.into(),

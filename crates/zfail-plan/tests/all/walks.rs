@@ -61,7 +61,7 @@ impl World {
                 }
             }
             6 => self.casters[1].1.translation += by,
-            7 => self.casters[0].1 = self.casters[0].1 * DAffine3::from_rotation_y(by.x),
+            7 => self.casters[0].1 *= DAffine3::from_rotation_y(by.x),
             8 => match self.casters.len() {
                 4 => self.casters.push((1, DAffine3::from_translation(by))),
                 _ => self.casters.truncate(4),
@@ -120,8 +120,11 @@ impl World {
     }
 }
 
+/// A draw, and its parts' index lists.
+type Drawn = (Draw, [Vec<u32>; 4]);
+
 /// Everything that is drawn, wherever it lies.
-fn drawn(plan: &FramePlan) -> Vec<(LightStats, Vec<Vec<(Draw, [Vec<u32>; 4])>>)> {
+fn drawn(plan: &FramePlan) -> Vec<(LightStats, Vec<Vec<Drawn>>)> {
     let list = |range: &std::ops::Range<u32>| plan.indices[range.start as usize..range.end as usize].to_vec();
     let draw = |draw: &Draw| {
         let volume = &draw.volume;
