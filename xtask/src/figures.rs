@@ -80,7 +80,7 @@ const PAGE: &str = "512x288";
 const SMALL: &str = "240x135";
 
 /// The scenes on which the papers' claims are shown.
-const HARD_SCENES: [&str; 10] = [
+pub const HARD_SCENES: [&str; 10] = [
     "builtin:container",
     "builtin:nested",
     "builtin:cathedral",
@@ -168,7 +168,8 @@ fn copy_files(from: &Path, to: &Path) -> Result<(), String> {
     Ok(())
 }
 
-fn guide() -> PathBuf {
+/// The folder of the guide.
+pub fn guide() -> PathBuf {
     root().join("docs").join("guide")
 }
 

@@ -1,0 +1,102 @@
+//! The page on which the papers' claims are judged, made anew by the program and by experiments: `cargo xtask claims [small]`.
+//!
+//! In: the commands below. Out: `docs/claims.md`, or a page of the same form in `target/claims`, of few and small frames, to see
+//! in half a minute whether all of it works.
+
+use crate::figures::{HARD_SCENES, guide};
+use crate::program::{Program, create, example};
+use crate::root;
+use std::fs;
+use std::path::Path;
+
+/// How much is measured.
+struct Scale {
+    /// Of `zfail`.
+    frames: &'static str,
+    /// Pixels at which methods are compared.
+    size: &'static str,
+    /// Scenes in which shadow maps are tried.
+    maps: &'static [&'static str],
+    /// Of the experiments.
+    measure: &'static [&'static str],
+    /// From the root.
+    page: &'static str,
+}
+
+const WHOLE: Scale = Scale {
+    frames: "bench --frames 20",
+    size: "160x100",
+    maps: &["builtin:cathedral", "builtin:container", "builtin:jail", "builtin:room"],
+    measure: &["measure"],
+    page: "docs/claims.md",
+};
+
+const SMALL: Scale = Scale {
+    frames: "bench --frames 2 --size 96x54",
+    size: "64x40",
+    maps: &["builtin:container", "builtin:jail"],
+    measure: &["measure", "small"],
+    page: "target/claims/claims.md",
+};
+
+/// Those of which something is claimed.
+const METHODS: &str = "heidmann-two-pass,heidmann-two-sided,carmack-preload,everitt-kilgard,mcguire,zfail,shadow-map";
+
+/// Resolutions and biases of the shadow maps that are tried: all resolutions at the usual bias, all biases at the usual
+/// resolution.
+const MAPS: [(u32, &str); 6] =
+    [(256, "0.001"), (1024, "0.0001"), (1024, "0.0003"), (1024, "0.001"), (1024, "0.003"), (4096, "0.001")];
+
+/// Makes the whole page, or a small one.
+///
+/// # Errors
+/// Names the command that failed, or the file that cannot be written.
+pub fn run(small: bool) -> Result<(), String> {
+    let scale = if small { SMALL } else { WHOLE };
+    let folder = root().join("target").join("claims");
+    if folder.exists() {
+        fs::remove_dir_all(&folder).map_err(|e| format!("cannot empty {}: {e}", folder.display()))?;
+    }
+    for part in ["methods", "maps"] {
+        create(&folder.join(part))?;
+    }
+    let program = Program::build(&[])?;
+    let zfail = |command: &str, file: &str| {
+        println!("+ zfail {command}");
+        write(&folder.join(file), program.run(&guide(), command.split(' ').chain(["--json", "-q"]))?)
+    };
+    write(&folder.join("adapters.json"), program.run(&guide(), ["adapters", "--json"])?)?;
+    zfail(scale.frames, "frames.json")?;
+    // Pictures that nobody wants.
+    let pictures = folder.join("pictures");
+    let pictures = pictures.to_str().ok_or("the checkout's path is not Unicode")?;
+    let methods = format!("--size {} --method {METHODS}", scale.size);
+    for (i, scene) in HARD_SCENES.iter().enumerate() {
+        zfail(&format!("compare {scene} {methods} -o {pictures}"), &format!("methods/{i}.json"))?;
+    }
+    for (i, scene) in scale.maps.iter().enumerate() {
+        for (k, (resolution, bias)) in MAPS.into_iter().enumerate() {
+            let map =
+                format!("--size {} --method shadow-map --shadow-map resolution={resolution},bias={bias}", scale.size);
+            zfail(&format!("compare {scene} {map} -o {pictures}"), &format!("maps/{i}-{k}.json"))?;
+        }
+    }
+    let measure = scale.measure.join(" ");
+    println!("+ claims {measure}");
+    write(&folder.join("measured.json"), example("claims", scale.measure)?)?;
+    let commands = [
+        format!("frames: zfail {}", scale.frames),
+        format!("methods: zfail compare SCENE {methods}"),
+        format!("maps: zfail compare SCENE --size {} --method shadow-map --shadow-map resolution=N,bias=X", scale.size),
+        format!("all others: cargo run --workspace --example claims {measure}"),
+    ];
+    write(&folder.join("commands.txt"), commands.join("\n"))?;
+    let page = root().join(scale.page);
+    write(&page, example("claims", ["page".as_ref(), folder.as_os_str()])?)?;
+    println!("{}", page.display());
+    Ok(())
+}
+
+fn write(path: &Path, text: impl AsRef<[u8]>) -> Result<(), String> {
+    fs::write(path, text).map_err(|e| format!("cannot write {}: {e}", path.display()))
+}
