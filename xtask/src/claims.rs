@@ -13,6 +13,8 @@ use std::path::Path;
 struct Scale {
     /// Of `zfail`.
     frames: &'static str,
+    /// Scenes in which methods are compared.
+    methods: &'static [&'static str],
     /// Pixels at which methods are compared.
     size: &'static str,
     /// Scenes in which shadow maps are tried.
@@ -25,6 +27,7 @@ struct Scale {
 
 const WHOLE: Scale = Scale {
     frames: "bench --frames 20",
+    methods: &HARD_SCENES,
     size: "160x100",
     maps: &["builtin:cathedral", "builtin:container", "builtin:jail", "builtin:room"],
     measure: &["measure"],
@@ -32,7 +35,8 @@ const WHOLE: Scale = Scale {
 };
 
 const SMALL: Scale = Scale {
-    frames: "bench --frames 2 --size 96x54",
+    frames: "bench builtin:room builtin:stage --frames 2 --size 96x54",
+    methods: &["builtin:container", "builtin:jail", "builtin:stacked", "scenes/close-lamp.gltf"],
     size: "64x40",
     maps: &["builtin:container", "builtin:jail"],
     measure: &["measure", "small"],
@@ -46,6 +50,13 @@ const METHODS: &str = "heidmann-two-pass,heidmann-two-sided,carmack-preload,ever
 /// resolution.
 const MAPS: [(u32, &str); 6] =
     [(256, "0.001"), (1024, "0.0001"), (1024, "0.0003"), (1024, "0.001"), (1024, "0.003"), (4096, "0.001")];
+
+impl Scale {
+    /// Options for one shadow map.
+    fn map(&self, (resolution, bias): (u32, &str)) -> String {
+        format!("--size {} --method shadow-map --shadow-map resolution={resolution},bias={bias}", self.size)
+    }
+}
 
 /// Makes the whole page, or a small one.
 ///
@@ -71,25 +82,23 @@ pub fn run(small: bool) -> Result<(), String> {
     let pictures = folder.join("pictures");
     let pictures = pictures.to_str().ok_or("the checkout's path is not Unicode")?;
     let methods = format!("--size {} --method {METHODS}", scale.size);
-    for (i, scene) in HARD_SCENES.iter().enumerate() {
+    for (i, scene) in scale.methods.iter().enumerate() {
         zfail(&format!("compare {scene} {methods} -o {pictures}"), &format!("methods/{i}.json"))?;
     }
     for (i, scene) in scale.maps.iter().enumerate() {
-        for (k, (resolution, bias)) in MAPS.into_iter().enumerate() {
-            let map =
-                format!("--size {} --method shadow-map --shadow-map resolution={resolution},bias={bias}", scale.size);
-            zfail(&format!("compare {scene} {map} -o {pictures}"), &format!("maps/{i}-{k}.json"))?;
+        for (k, map) in MAPS.into_iter().enumerate() {
+            zfail(&format!("compare {scene} {} -o {pictures}", scale.map(map)), &format!("maps/{i}-{k}.json"))?;
         }
     }
     let measure = scale.measure.join(" ");
     println!("+ claims {measure}");
     write(&folder.join("measured.json"), example("claims", scale.measure)?)?;
-    let commands = [
+    let mut commands = vec![
         format!("frames: zfail {}", scale.frames),
         format!("methods: zfail compare SCENE {methods}"),
-        format!("maps: zfail compare SCENE --size {} --method shadow-map --shadow-map resolution=N,bias=X", scale.size),
         format!("all others: cargo run --workspace --example claims {measure}"),
     ];
+    commands.extend(MAPS.map(|map| format!("maps: zfail compare SCENE {}", scale.map(map))));
     write(&folder.join("commands.txt"), commands.join("\n"))?;
     let page = root().join(scale.page);
     write(&page, example("claims", ["page".as_ref(), folder.as_os_str()])?)?;

@@ -1,8 +1,11 @@
-//! The guide's figures and table, made anew by the program: `cargo xtask figures [FILTER]`.
+//! The guide's figures and tables, made anew by the program: `cargo xtask figures [FILTER]`.
 //!
-//! In: the list below. Out: `docs/guide/figures/*.png` and `docs/guide/tables/compare.md`. Each command runs in a folder with
+//! In: the list below. Out: `docs/guide/figures/*.png` and `docs/guide/tables/compare.md`; and the tables of the last chapter,
+//! of `sections`. Each command runs in a folder with
 //! nothing but the guide's own scenes; one of the files that it leaves there is the figure. Beneath its figure the guide shows the command as it stands here, without
 //! the options that only fit the picture into the page.
+
+mod sections;
 
 use crate::program::{Program, create, example};
 use crate::root;
@@ -74,6 +77,9 @@ const FIGURES: &[Figure] = &[
 /// The table's name for those who want it alone.
 const TABLE: &str = "compare-table";
 
+/// Those of the last chapter.
+const SECTIONS: &str = "sections";
+
 /// Of a picture as wide as the page.
 const PAGE: &str = "512x288";
 /// Of one picture on a contact sheet.
@@ -99,8 +105,14 @@ pub const HARD_SCENES: [&str; 10] = [
 /// Names the command that failed or the file that it did not write; says so if no name contains `filter`.
 pub fn run(filter: Option<&str>) -> Result<(), String> {
     let wanted = |name: &str| filter.is_none_or(|part| name.contains(part));
-    if !FIGURES.iter().map(|figure| figure.name).chain([TABLE]).any(wanted) {
+    if !FIGURES.iter().map(|figure| figure.name).chain([TABLE, SECTIONS]).any(wanted) {
         return Err(format!("no figure has '{}' in its name", filter.unwrap_or_default()));
+    }
+    if wanted(SECTIONS) {
+        chapter()?;
+    }
+    if filter == Some(SECTIONS) {
+        return Ok(());
     }
     let program = Program::build(&[])?;
     let figures = guide().join("figures");
@@ -145,6 +157,19 @@ fn table(program: &Program) -> Result<(), String> {
     create(&guide().join("tables"))?;
     fs::write(&file, text).map_err(|e| format!("cannot write {}: {e}", file.display()))?;
     println!("{}", file.display());
+    Ok(())
+}
+
+/// The tables of the last chapter.
+fn chapter() -> Result<(), String> {
+    let path = guide().join(sections::CHAPTER);
+    let read = |path: &Path| fs::read_to_string(path).map_err(|e| format!("cannot read {}: {e}", path.display()));
+    let mut text = read(&path)?;
+    for list in [sections::SECTIONS, sections::CORRECTIONS] {
+        text = list.put_into(&text, &read(&guide().join("tables").join(list.file))?)?;
+    }
+    fs::write(&path, text).map_err(|e| format!("cannot write {}: {e}", path.display()))?;
+    println!("{}", path.display());
     Ok(())
 }
 

@@ -23,7 +23,8 @@ pub fn claims() -> Vec<Claim> {
                     figures.iter().map(|figure| digits(figure.value)).collect::<Vec<_>>().join(", ")
                 };
                 format!(
-                    "The renderer has no conventional depth; it is computed on the CPU, in the same f32 arithmetic. With depth stored \
+                    "Less than 0 is more that is told apart: without a far plane, the matrix has a row that needs no rounding. The \
+                     renderer has no conventional depth; it is computed on the CPU, in the same f32 arithmetic. With depth stored \
                      as f32 the losses are {}; with reversed depth, as the library draws, {}.",
                     words(Buffer::ConventionalFloat),
                     words(Buffer::ReversedFloat)
@@ -53,7 +54,7 @@ pub fn claims() -> Vec<Claim> {
             figures: |inputs| {
                 let bands = &inputs.measured.bands;
                 let banded = bands.iter().find(|bands| bands.eight_bits > 0.02 * 255.0).or(bands.last());
-                banded.map(|bands| figure("lights", bands.lights as f64)).into_iter().collect()
+                banded.map(|bands| figure("from", bands.lights as f64)).into_iter().collect()
             },
             rule: "they are 10 to 40",
             holds: |lights| lights.iter().all(|lights| (10.0..=40.0).contains(lights)),

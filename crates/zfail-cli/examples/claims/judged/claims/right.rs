@@ -18,7 +18,7 @@ pub fn claims() -> Vec<Claim> {
     vec![
         right("C, of preloading", "That works all the time", |inputs| wrong(inputs, "carmack-preload")),
         right("McG 3, of E&K", "gives correct results for all scenes", |inputs| wrong(inputs, "everitt-kilgard")),
-        right("McG, title", "Fast, Practical and Robust Shadows", |inputs| wrong(inputs, "mcguire")),
+        right("McG 3, of itself", "use z-fail testing to ensure robustness", |inputs| wrong(inputs, "mcguire")),
     ]
 }
 

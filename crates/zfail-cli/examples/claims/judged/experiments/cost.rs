@@ -1,10 +1,10 @@
 //! Triangles of volumes, by those of the scene that casts them (C: "3x the triangle count of the source model").
 
-use super::plan;
+use super::{builtin, casters, plan};
 use serde::{Deserialize, Serialize};
 use std::error::Error;
 use zfail_builtin::SCENES;
-use zfail_plan::plan::{Caster, Planner, Silhouettes, Steps, Technique, Tiles};
+use zfail_plan::plan::{Planner, Silhouettes, Steps, Technique, Tiles};
 use zfail_scene::Scene;
 
 /// One light of a scene, from one camera.
@@ -26,22 +26,14 @@ pub struct Cost {
 pub fn measure(size: [u32; 2]) -> Result<Vec<Cost>, Box<dyn Error>> {
     let mut lines = Vec::new();
     for entry in SCENES {
-        let mut scene = zfail_builtin::scene(entry.name).ok_or("a scene is missing")?;
-        zfail_scene::complete(&mut scene);
-        of_scene(entry.name, &scene, size, &mut lines)?;
+        of_scene(entry.name, &builtin(entry.name)?, size, &mut lines)?;
     }
     Ok(lines)
 }
 
 fn of_scene(name: &str, scene: &Scene, size: [u32; 2], lines: &mut Vec<Cost>) -> Result<(), Box<dyn Error>> {
     let topologies = scene.topologies()?;
-    let instances = scene.instances.iter().filter(|instance| instance.casts_shadow);
-    let casters: Vec<Caster<'_>> = instances
-        .filter_map(|instance| {
-            let topology = topologies[instance.mesh].as_ref()?;
-            Some(Caster { topology, mesh: instance.mesh as u64, world_from_object: instance.world_from_object })
-        })
-        .collect();
+    let casters = casters(scene, &topologies);
     let source: usize = casters.iter().map(|caster| caster.topology.triangles().len()).sum();
     let steps = Steps { tiles: Tiles::Never, silhouettes: Silhouettes::Cpu, ..Technique::Auto.steps() };
     for (camera, from) in scene.cameras.iter().enumerate() {

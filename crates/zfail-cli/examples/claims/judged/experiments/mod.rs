@@ -6,6 +6,7 @@ mod cost;
 mod depth;
 mod fan;
 mod growth;
+mod level;
 mod lights;
 mod placements;
 mod sunset;
@@ -15,6 +16,7 @@ pub use cost::Cost;
 pub use depth::{Buffer, Depth};
 pub use fan::Fan;
 pub use growth::{Growth, Size};
+pub use level::Level;
 pub use lights::Bands;
 pub use placements::Placement;
 pub use sunset::Sun;
@@ -27,7 +29,7 @@ use zfail_plan::light::LightKind;
 use zfail_plan::plan::{Caster, Counting, FramePlan, Input, Planner, ShadowLight, Steps};
 use zfail_plan::topology::Topology;
 use zfail_plan::view::{Projection, View};
-use zfail_scene::Mesh;
+use zfail_scene::{Mesh, Scene};
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,6 +57,7 @@ pub struct Measured {
     pub bands: Vec<Bands>,
     pub cost: Vec<Cost>,
     pub two_sided: Vec<TwoSided>,
+    pub level: Vec<Level>,
 }
 
 /// Runs all of them.
@@ -71,6 +74,7 @@ pub fn run(extent: Extent) -> Result<Measured, Box<dyn Error>> {
         bands: lights::measure(extent.pick(2_000, 200)),
         cost: cost::measure(extent.pick([1280, 720], [160, 90]))?,
         two_sided: two_sided::measure(extent.pick([1280, 720], [160, 90]), extent.pick(41, 5))?,
+        level: level::measure(extent.pick([640, 360], [96, 54]), extent.pick(8, 3))?,
     })
 }
 
@@ -100,4 +104,21 @@ fn plan<'a>(
 ) -> Result<&'a FramePlan, Box<dyn Error>> {
     let lights = [ShadowLight::new(light)];
     Ok(planner.plan(&Input { view, casters, lights: &lights, receivers: &[], steps, counting: Counting::Verdict })?)
+}
+
+/// A built-in scene as the program has it.
+fn builtin(name: &str) -> Result<Scene, Box<dyn Error>> {
+    let mut scene = zfail_builtin::scene(name).ok_or_else(|| format!("there is no scene {name}"))?;
+    zfail_scene::complete(&mut scene);
+    Ok(scene)
+}
+
+/// What of a scene casts.
+fn casters<'a>(scene: &Scene, topologies: &'a [Option<Topology>]) -> Vec<Caster<'a>> {
+    let instances = scene.instances.iter().filter(|instance| instance.casts_shadow);
+    let casters = instances.filter_map(|instance| {
+        let topology = topologies[instance.mesh].as_ref()?;
+        Some(Caster { topology, mesh: instance.mesh as u64, world_from_object: instance.world_from_object })
+    });
+    casters.collect()
 }

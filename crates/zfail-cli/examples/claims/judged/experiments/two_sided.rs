@@ -3,12 +3,12 @@
 //! The same volumes, placed beforehand so that a vertex costs next to nothing, counted both ways in turn. Both have to leave the
 //! same stencil.
 
-use super::plan;
+use super::{builtin, casters, plan};
 use serde::{Deserialize, Serialize};
 use std::error::Error;
 use std::time::Instant;
 use zfail_plan::glam::{DMat4, DVec3, DVec4};
-use zfail_plan::plan::{Caster, Planner, Technique};
+use zfail_plan::plan::{Planner, Technique};
 use zfail_plan::view::View;
 use zfail_render::wgpu::util::{BufferInitDescriptor, DeviceExt};
 use zfail_render::wgpu::{self, CompareFunction, Face, StencilOperation};
@@ -42,8 +42,7 @@ pub fn measure(size: [u32; 2], runs: usize) -> Result<Vec<TwoSided>, Box<dyn Err
 }
 
 fn compare(gpu: &Gpu, name: &str, size: [u32; 2], runs: usize) -> Result<TwoSided, Box<dyn Error>> {
-    let mut scene = zfail_builtin::scene(name).ok_or("a scene is missing")?;
-    zfail_scene::complete(&mut scene);
+    let scene = builtin(name)?;
     let view = scene.cameras[0].view(size, &scene.bounds());
     let volumes = volumes(&scene, &view)?;
     let bench = Bench::new(gpu, size, &surfaces(&scene, &view), &volumes);
@@ -82,15 +81,7 @@ fn surfaces(scene: &Scene, view: &View) -> Vec<[f32; 4]> {
 /// Corners of the first light's volumes in clip space, outside counter-clockwise.
 fn volumes(scene: &Scene, view: &View) -> Result<Vec<[f32; 4]>, Box<dyn Error>> {
     let topologies = scene.topologies()?;
-    let casters: Vec<Caster<'_>> = scene
-        .instances
-        .iter()
-        .filter(|instance| instance.casts_shadow)
-        .filter_map(|instance| {
-            let topology = topologies[instance.mesh].as_ref()?;
-            Some(Caster { topology, mesh: instance.mesh as u64, world_from_object: instance.world_from_object })
-        })
-        .collect();
+    let casters = casters(scene, &topologies);
     let mut planner = Planner::new();
     let steps = Technique::EverittKilgard.steps();
     let plan = plan(&mut planner, view, &casters, scene.lights[0].kind, steps)?;
