@@ -63,15 +63,22 @@ const FIGURES: &[Figure] = &[
     picture("stacked", "render builtin:stacked"),
     picture("stacked-stencil", "render builtin:stacked --light 0 --overlay stencil"),
     sheet("compare-stacked", "compare builtin:stacked --method everitt-kilgard,zfail"),
+    sheet("compare-stairs", "compare scenes/long-stairs.gltf --method everitt-kilgard,zfail"),
     picture("cathedral-cases", "render builtin:cathedral --camera 1 --light 0 --technique mcguire --overlay cases"),
     picture("container-pyramid", "render builtin:container --light 0 --overlay pyramid"),
     picture("stage-scissors", "render builtin:stage --light 0 --overlay scissors"),
+    picture(
+        "above-everitt-kilgard",
+        "render scenes/lamp-from-above.gltf --technique everitt-kilgard --overlay volumes,scissors",
+    ),
+    picture("above-mcguire", "render scenes/lamp-from-above.gltf --technique mcguire --overlay volumes,scissors"),
     picture("cathedral-cases-auto", "render builtin:cathedral --camera 1 --light 0 --overlay cases"),
     picture("anemone-silhouettes", "render builtin:anemone --time 1 --light 0 --overlay silhouettes"),
     picture("foliage-wireframe", "render builtin:foliage --overlay wireframe"),
     sheet("compare-all", "compare builtin:nested"),
     sheet("compare-shadow-map", "compare builtin:container --method zfail,shadow-map --shadow-map resolution=256"),
     picture("room-lights", "render builtin:room --overlay volumes-by-light"),
+    picture("room-one-light", "render builtin:room --overlay volumes --overlay-light 0"),
 ];
 
 /// The table's name for those who want it alone.

@@ -5,6 +5,8 @@
 //! standard output: JSON or Markdown.
 
 mod judged;
+#[path = "../shared/wrap.rs"]
+mod wrap;
 
 use judged::experiments::Extent;
 use judged::{Inputs, experiments, page};
@@ -16,7 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["measure"] => println!("{}", serde_json::to_string_pretty(&experiments::run(Extent::Whole)?)?),
         ["measure", "small"] => println!("{}", serde_json::to_string_pretty(&experiments::run(Extent::Small)?)?),
-        ["page", folder] => print!("{}", page::page(&Inputs::read(Path::new(folder))?)?),
+        ["page", folder] => print!("{}", wrap::wrapped(&page::page(&Inputs::read(Path::new(folder))?)?)),
         _ => return Err("usage: claims measure [small] | claims page FOLDER".into()),
     }
     Ok(())

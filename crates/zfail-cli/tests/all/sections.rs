@@ -1,10 +1,10 @@
 //! The guide's tables from section to module to test, and of corrections: complete, and every path in them leads somewhere.
 
 #[path = "../../../../xtask/src/figures/sections.rs"]
-mod sections;
+mod lists;
 
 use crate::support::papers::{EVERITT_KILGARD, MCGUIRE};
-use sections::{CHAPTER, CORRECTIONS, List, SECTIONS, rows};
+use lists::{CHAPTER, CORRECTIONS, List, SECTIONS, rows};
 use std::fs;
 use std::path::{Path, PathBuf};
 

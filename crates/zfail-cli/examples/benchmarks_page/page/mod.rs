@@ -6,8 +6,6 @@
 pub mod benches;
 pub mod frames;
 pub mod growth;
-#[path = "../../shared/wrap.rs"]
-mod wrap;
 
 use serde::Deserialize;
 use std::error::Error;
@@ -65,7 +63,7 @@ impl Inputs {
         {
             text += &format!("\n## Parts\n\n    {command}\n\n{}", benches::table(&self.benches));
         }
-        Ok(wrap::wrapped(&text))
+        Ok(text)
     }
 }
 

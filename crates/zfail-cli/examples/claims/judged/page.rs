@@ -1,8 +1,5 @@
 //! The page: verdicts in short, then every claim with its figures and the rule that judges them.
 
-#[path = "../../shared/wrap.rs"]
-mod wrap;
-
 use super::Inputs;
 use super::claim::{Claim, Verdict, digits};
 use super::claims;
@@ -39,7 +36,7 @@ pub fn page(inputs: &Inputs) -> Result<String, Box<dyn Error>> {
         .into();
     let commands: String =
         inputs.commands.iter().map(|[name, command]| format!("| {name} | `{command}` |\n")).collect();
-    let text = format!(
+    Ok(format!(
         "# The papers' claims, judged\n\n\
          Made by `cargo xtask claims`, which measures all of it and writes this page anew, on {} ({}). What is quantitative or \
          compares in *C*, *E&K* and *McG* (the [guide](guide/README.md) has their titles) stands beside what was measured, and a \
@@ -53,8 +50,7 @@ pub fn page(inputs: &Inputs) -> Result<String, Box<dyn Error>> {
         Verdict::NotHere.name(),
         counts.join(", "),
         verdicts.len(),
-    );
-    Ok(wrap::wrapped(&text))
+    ))
 }
 
 /// The verdict, and the figures in words.

@@ -92,7 +92,7 @@ fn volumes(scene: &Scene, view: &View) -> Result<Vec<[f32; 4]>, Box<dyn Error>> 
         let clip = view.clip_from_view() * view_from_world * DMat4::from(caster.world_from_object);
         let place = |index: u32| {
             let p: DVec3 = caster.topology.position(index / 2);
-            let p: DVec4 = if index % 2 == 0 { p.extend(1.0) } else { draw.extruded(p) };
+            let p: DVec4 = if index.is_multiple_of(2) { p.extend(1.0) } else { draw.extruded(p) };
             (clip * p).as_vec4().to_array()
         };
         for (range, turned) in [(draw.volume.outward(), false), (draw.volume.light_cap_reversed.clone(), true)] {
