@@ -18,7 +18,9 @@ struct Scale {
     /// Pixels at which methods are compared.
     size: &'static str,
     /// Scenes in which shadow maps are tried.
-    maps: &'static [&'static str],
+    mapped: &'static [&'static str],
+    /// Resolutions and biases that are tried: three resolutions at the usual bias, biases at the usual resolution.
+    maps: &'static [(u32, &'static str)],
     /// Of the experiments.
     measure: &'static [&'static str],
     /// From the root.
@@ -29,7 +31,8 @@ const WHOLE: Scale = Scale {
     frames: "bench --frames 20",
     methods: &HARD_SCENES,
     size: "160x100",
-    maps: &["builtin:cathedral", "builtin:container", "builtin:jail", "builtin:room"],
+    mapped: &["builtin:cathedral", "builtin:container", "builtin:jail", "builtin:room"],
+    maps: &[(256, "0.001"), (1024, "0.0001"), (1024, "0.0003"), (1024, "0.001"), (1024, "0.003"), (4096, "0.001")],
     measure: &["measure"],
     page: "docs/claims.md",
 };
@@ -38,18 +41,14 @@ const SMALL: Scale = Scale {
     frames: "bench builtin:room builtin:stage --frames 2 --size 96x54",
     methods: &["builtin:container", "builtin:jail", "builtin:stacked", "scenes/close-lamp.gltf"],
     size: "64x40",
-    maps: &["builtin:container", "builtin:jail"],
+    mapped: &["builtin:container", "builtin:jail"],
+    maps: &[(256, "0.001"), (512, "0.001"), (1024, "0.0003"), (1024, "0.001")],
     measure: &["measure", "small"],
     page: "target/claims/claims.md",
 };
 
 /// Those of which something is claimed.
 const METHODS: &str = "heidmann-two-pass,heidmann-two-sided,carmack-preload,everitt-kilgard,mcguire,zfail,shadow-map";
-
-/// Resolutions and biases of the shadow maps that are tried: all resolutions at the usual bias, all biases at the usual
-/// resolution.
-const MAPS: [(u32, &str); 6] =
-    [(256, "0.001"), (1024, "0.0001"), (1024, "0.0003"), (1024, "0.001"), (1024, "0.003"), (4096, "0.001")];
 
 impl Scale {
     /// Options for one shadow map.
@@ -85,8 +84,8 @@ pub fn run(small: bool) -> Result<(), String> {
     for (i, scene) in scale.methods.iter().enumerate() {
         zfail(&format!("compare {scene} {methods} -o {pictures}"), &format!("methods/{i}.json"))?;
     }
-    for (i, scene) in scale.maps.iter().enumerate() {
-        for (k, map) in MAPS.into_iter().enumerate() {
+    for (i, scene) in scale.mapped.iter().enumerate() {
+        for (k, &map) in scale.maps.iter().enumerate() {
             zfail(&format!("compare {scene} {} -o {pictures}", scale.map(map)), &format!("maps/{i}-{k}.json"))?;
         }
     }
@@ -98,7 +97,7 @@ pub fn run(small: bool) -> Result<(), String> {
         format!("methods: zfail compare SCENE {methods}"),
         format!("all others: cargo run --workspace --example claims {measure}"),
     ];
-    commands.extend(MAPS.map(|map| format!("maps: zfail compare SCENE {}", scale.map(map))));
+    commands.extend(scale.maps.iter().map(|&map| format!("maps: zfail compare SCENE {}", scale.map(map))));
     write(&folder.join("commands.txt"), commands.join("\n"))?;
     let page = root().join(scale.page);
     write(&page, example("claims", ["page".as_ref(), folder.as_os_str()])?)?;

@@ -89,7 +89,7 @@ pub fn claims() -> Vec<Claim> {
                 let wrong = |of: &Comparison| of.of("everitt-kilgard").map(|o| o.wrong_pixels);
                 let scenes = inputs.methods.iter().filter(|of| wrong(of).is_some_and(|wrong| wrong > 0));
                 let names: Vec<&str> = scenes.map(|of| of.name()).collect();
-                format!("Wrong in: {}, built for it.", names.join(", "))
+                format!("Wrong in: {}; `stacked` is built to be.", names.join(", "))
             },
         },
     ]

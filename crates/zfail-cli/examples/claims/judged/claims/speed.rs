@@ -172,7 +172,7 @@ pub fn claims() -> Vec<Claim> {
             source: "E&K 5, Figure 4",
             quote: "34 frames/second on a GeForce4 Ti 4600 at 640x480",
             experiment: "frames",
-            measured: "Frames per second of `room`, by their technique",
+            measured: "Frames per second of `room` by their technique, at the size of the experiment",
             figures: |inputs| {
                 let frame = inputs.frame("room", "everitt-kilgard", true);
                 frame.map(|frame| figure("room", 1e3 / frame.wall_ms.median)).into_iter().collect()
