@@ -47,7 +47,9 @@ fn fill(folder: &Path) {
 /// Figures that differ from these in a way that a rule may care about.
 fn others(values: &[f64]) -> Vec<Vec<f64>> {
     let changes: [fn(f64) -> f64; 4] = [|_| 0.0, |v| 1e-3 * v, |v| 1e3 * v, |v| v + 1e3];
-    let mut others = Vec::new();
+    // Falling, as what gets better from one to the next.
+    let falling = (0..values.len() as i32).map(|i| 1e3 * 0.25_f64.powi(i)).collect();
+    let mut others = vec![falling];
     for change in changes {
         others.push(values.iter().copied().map(change).collect());
         for i in 0..values.len() {
