@@ -87,7 +87,13 @@ impl SceneBuilder {
 
     /// Places a mesh.
     pub fn place(&mut self, name: &str, mesh: usize, world_from_object: DAffine3) -> usize {
-        self.0.instances.push(Instance { name: name.to_owned(), mesh, world_from_object, casts_shadow: true });
+        self.0.instances.push(Instance {
+            name: name.to_owned(),
+            mesh,
+            world_from_object,
+            casts_shadow: true,
+            receives_shadow: true,
+        });
         self.0.instances.len() - 1
     }
 

@@ -308,10 +308,14 @@ fn small_parts(recipe: &mut Recipe, random: &mut Random, shapes: [Shape; 2]) {
 
 /// Puts a mesh of many parts around the eye, so that few of them stand before it, and a box around the first light.
 fn district(recipe: &mut Recipe, random: &mut Random) {
-    let (count, seed) = (random.between(30.0, 120.0) as u32, u64::from(random.below(1 << 20)));
+    let (count, seed) = (random.between(16.0, 50.0) as u32, u64::from(random.below(1 << 20)));
     let pose = place_upright(DVec3::Y * 1.1, DVec3::new(random.between(2.0, 4.0), 2.0, random.between(2.0, 4.0)));
     let part = Part::new(Shape::District(count, seed), pose);
     recipe.parts.push(if random.once_in(3) { part.double() } else { part });
+    // A card on which no shadow falls.
+    let at = DVec3::new(random.between(-1.0, 1.0), 0.9, random.between(-1.0, 1.0));
+    let label = place(random, at, 0.6);
+    recipe.parts.push(Part { receives: false, ..Part::new(Shape::Sheet(2), label).double() });
     let eye = DVec3::new(random.between(-2.5, 2.5), random.between(0.6, 2.4), random.between(-2.5, 2.5));
     recipe.view.world_from_view = look(eye, random.in_cube(1.0) + DVec3::Y * 0.5);
     recipe.half_extents = Some(DVec3::splat(0.4) + random.in_cube(3.0).abs());

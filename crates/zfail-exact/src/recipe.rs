@@ -36,6 +36,8 @@ pub struct Part {
     pub surface: Surface,
     /// For whom it casts.
     pub casting: CastsFor,
+    /// Whether shadows fall on it.
+    pub receives: bool,
 }
 
 /// Materials that matter for shadows.
@@ -64,7 +66,7 @@ impl Part {
     /// A single-sided part that casts.
     #[must_use]
     pub const fn new(shape: Shape, pose: DAffine3) -> Self {
-        Self { shape, pose, surface: Surface::Single, casting: CastsFor::All }
+        Self { shape, pose, surface: Surface::Single, casting: CastsFor::All, receives: true }
     }
 
     /// With both sides drawn.
@@ -89,6 +91,7 @@ impl Recipe {
                 mesh: i,
                 world_from_object: part.pose,
                 casts_shadow: part.casting != CastsFor::None,
+                receives_shadow: part.receives,
             });
         }
         let parts = || self.parts.iter().enumerate();

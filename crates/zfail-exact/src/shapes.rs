@@ -306,7 +306,7 @@ impl Builder {
             }
             // On a grid, so that some touch at corners.
             let cell = random.in_cube(4.0).round() * 0.25;
-            let size = if random.once_in(4) { DVec3::splat(0.125) } else { random.in_cube(0.1).abs() + 0.03 };
+            let size = if random.once_in(4) { DVec3::splat(0.125) } else { random.in_cube(0.1).abs() + 0.05 };
             let first = self.positions.len() as u32;
             self.positions.extend(part.positions.iter().map(|&p| cell * DVec3::new(1.0, 0.5, 1.0) + p * size));
             self.triangles.extend(part.triangles.iter().map(|t| t.map(|v| v + first)));

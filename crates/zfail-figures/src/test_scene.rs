@@ -24,6 +24,7 @@ pub fn scene() -> Scene {
         mesh,
         world_from_object: DAffine3::from_translation(DVec3::new(1e5, y, 0.0)),
         casts_shadow: true,
+        receives_shadow: true,
     };
     let light = |x: f64| Light {
         name: String::new(),

@@ -108,5 +108,5 @@ fn painted(name: &str, mesh: Mesh) -> Mesh {
 
 fn place(scene: &mut Scene, mesh: usize, world_from_object: DAffine3) {
     let name = format!("{}", scene.instances.len());
-    scene.instances.push(Instance { name, mesh, world_from_object, casts_shadow: true });
+    scene.instances.push(Instance { name, mesh, world_from_object, casts_shadow: true, receives_shadow: true });
 }

@@ -61,6 +61,7 @@
 //! # Extras
 //! What glTF has no word for, in the extras of nodes:
 //! - `castShadow`, a boolean: whether the meshes at and below the node block light, unless a node between says otherwise.
+//! - `receiveShadow`, a boolean: whether shadows fall on them, inherited alike.
 //!
 //! And on the nodes of lights:
 //! - `shadowExclude`, an array of names: what is at and below nodes of these names casts no shadow from the light.

@@ -19,16 +19,22 @@ use zfail_scene::Light;
 
 /// Heidmann's sides, counted from the eye's own shadow on.
 pub fn procedure(geometry: &Geometry, view: &View, light: &Light) -> Result<Procedure, Error> {
+    let start = layers_over_eye(Method::EyeCount, geometry, view, light)?;
+    Ok(Procedure { start, ..heidmann::two_sided(geometry, view, light)? })
+}
+
+/// How many layers of shadow the eye is in, for a method that wants to know.
+pub fn layers_over_eye(method: Method, geometry: &Geometry, view: &View, light: &Light) -> Result<u32, Error> {
     if matches!(view.projection, Projection::Orthographic { .. }) {
         let reason = "an orthographic view has no eye that could be in a shadow".to_owned();
-        return Err(Unavailable { method: Method::EyeCount, reason }.into());
+        return Err(Unavailable { method, reason }.into());
     }
     let mut start = 0;
     for (number, instance, mesh) in geometry.casters(light) {
         let (at, weights) = weigh(number, instance, mesh, light)?;
         start += layers(&mesh.topology, &weights, object_eye(instance, view).truncate(), at.as_dvec4());
     }
-    Ok(Procedure { start, ..heidmann::two_sided(geometry, view, light)? })
+    Ok(start)
 }
 
 /// How many layers lie between `eye` and the homogeneous `light`.

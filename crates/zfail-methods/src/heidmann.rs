@@ -34,5 +34,5 @@ pub fn two_sided(geometry: &Geometry, view: &View, light: &Light) -> Result<Proc
 /// Endless sides, counted from the near plane on.
 fn sides(geometry: &Geometry, view: &View, light: &Light, passes: Vec<Pass>) -> Result<Procedure, Error> {
     let volumes = Volumes::new(geometry, view, light, Extrusion::Infinite, Faces::Sides)?;
-    Ok(Procedure { view: *view, start: 0, lists: vec![volumes], passes, ledge: false })
+    Ok(Procedure { view: *view, start: 0, lists: vec![volumes], passes, ledge: false, inverted: false })
 }

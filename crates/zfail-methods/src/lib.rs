@@ -16,6 +16,9 @@
 // Counting in front of the visible surface.
 mod heidmann;
 
+// The other way round where the eye is in shadow.
+mod inverted_test;
+
 // From the eye's own shadow on.
 mod eye_count;
 

@@ -10,14 +10,20 @@ pub enum Method {
     HeidmannTwoPass,
     /// z-pass in one pass, counts that wrap.
     HeidmannTwoSided,
+    /// z-pass, with the test exchanged where the eye is in a volume.
+    InvertedTest,
     /// z-pass, starting from the number of volumes in which the eye is.
     EyeCount,
     /// z-pass, starting from counts without a depth test.
     CarmackPreload,
+    /// The same, with counts of those volumes that may meet the near plane.
+    CarmackPreloadNear,
     /// z-fail with a far plane and volumes that end somewhere.
     FiniteZFail,
     /// z-pass with volumes capped where the near plane cuts them.
     NearCaps,
+    /// z-fail at infinity, back and front faces in a pass each, counts that saturate.
+    EverittKilgardTwoPass,
     /// z-fail with the far plane and the ends of volumes at infinity.
     EverittKilgard,
     /// z-pass or z-fail by light.
@@ -34,13 +40,16 @@ pub enum Method {
 
 impl Method {
     /// Every method, in the order of history.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 15] = [
         Self::HeidmannTwoPass,
         Self::HeidmannTwoSided,
+        Self::InvertedTest,
         Self::EyeCount,
         Self::CarmackPreload,
+        Self::CarmackPreloadNear,
         Self::FiniteZFail,
         Self::NearCaps,
+        Self::EverittKilgardTwoPass,
         Self::EverittKilgard,
         Self::Lengyel,
         Self::Mcguire,
@@ -55,10 +64,13 @@ impl Method {
         match self {
             Self::HeidmannTwoPass => "heidmann-two-pass",
             Self::HeidmannTwoSided => "heidmann-two-sided",
+            Self::InvertedTest => "inverted-test",
             Self::EyeCount => "eye-count",
             Self::CarmackPreload => "carmack-preload",
+            Self::CarmackPreloadNear => "carmack-preload-near",
             Self::FiniteZFail => "finite-z-fail",
             Self::NearCaps => "near-caps",
+            Self::EverittKilgardTwoPass => "everitt-kilgard-two-pass",
             Self::EverittKilgard => "everitt-kilgard",
             Self::Lengyel => "lengyel",
             Self::Mcguire => "mcguire",
@@ -74,10 +86,13 @@ impl Method {
         match self {
             Self::HeidmannTwoPass => "Heidmann, two passes",
             Self::HeidmannTwoSided => "Heidmann, two-sided stencil",
+            Self::InvertedTest => "z-pass, test inverted",
             Self::EyeCount => "z-pass with eye count",
             Self::CarmackPreload => "Carmack's preload",
+            Self::CarmackPreloadNear => "Carmack's preload, near the view plane",
             Self::FiniteZFail => "Bilodeau & Carmack, finite z-fail",
             Self::NearCaps => "z-pass with near caps",
+            Self::EverittKilgardTwoPass => "Everitt & Kilgard, as printed",
             Self::EverittKilgard => "Everitt & Kilgard",
             Self::Lengyel => "Lengyel",
             Self::Mcguire => "McGuire et al.",
@@ -93,10 +108,15 @@ impl Method {
         match self {
             Self::HeidmannTwoPass => "Heidmann 1991; Everitt & Kilgard 2002, section 2.2.1",
             Self::HeidmannTwoSided => "Heidmann 1991; Everitt & Kilgard 2002, sections 4.1 and 4.3",
+            Self::InvertedTest => "Carmack's letter, May 2000, of \"the classic shadow volume works\"",
             Self::EyeCount => "Moller & Haines 1999; McGuire et al. 2003, section 3",
             Self::CarmackPreload => "Carmack's letter, May 2000: \"preload\"",
+            Self::CarmackPreloadNear => {
+                "Carmack's letter, May 2000: \"surfaces that were likely to intersect the view plane\""
+            }
             Self::FiniteZFail => "Bilodeau & Songy 1999; Carmack 2000; Everitt & Kilgard 2002, section 2.2.3",
             Self::NearCaps => "Diefenbach 1996; Kilgard 2001; Everitt & Kilgard 2002, section 2.2.2",
+            Self::EverittKilgardTwoPass => "Everitt & Kilgard 2002, section 3.3, step 6",
             Self::EverittKilgard => "Everitt & Kilgard 2002, section 3",
             Self::Lengyel => "Lengyel 2002; McGuire et al. 2003, section 3",
             Self::Mcguire => "McGuire et al. 2003, sections 6 and 7",
@@ -124,6 +144,10 @@ impl Method {
                 "Counting starts at the near plane as if nothing were in shadow there, so it is wrong wherever the near \
                  rectangle lies in a volume; counts wrap, so that the order of faces does not matter."
             }
+            Self::InvertedTest => {
+                "With the eye in shadow, what is not counted is dark; that is right while the eye is in one volume and no \
+                 other is in sight, and the near rectangle is not cut by it."
+            }
             Self::EyeCount => {
                 "One number stands for the whole near rectangle, so it is right with the eye deep inside a volume and \
                  wrong where a volume cuts partway through the rectangle."
@@ -132,6 +156,10 @@ impl Method {
                 "Faces counted without a depth test leave, at each pixel, how many volumes the near plane cuts off, which \
                  is what z-pass has to start from; the far plane still cuts volumes open."
             }
+            Self::CarmackPreloadNear => {
+                "The preload is empty where volumes keep clear of the near plane, so only those that may meet it are \
+                 counted without a depth test; what is right and wrong is the same."
+            }
             Self::FiniteZFail => {
                 "Counting starts from far away, so the near plane does not matter; but a far plane that cuts volumes, and \
                  volumes that end before they reach a surface, make it wrong."
@@ -139,6 +167,10 @@ impl Method {
             Self::NearCaps => {
                 "The near plane's cut is closed by polygons computed on the CPU, which never meet the device's clipping to \
                  the bit, so that single pixels along the cut go wrong."
+            }
+            Self::EverittKilgardTwoPass => {
+                "Back faces come first and stop at 255, so that what front faces take off again is too much wherever more \
+                 layers overlap; elsewhere it is the same as with counts that wrap."
             }
             Self::EverittKilgard => {
                 "Volumes closed at infinity, before a far plane that is there too, cannot be cut open; it is right under \

@@ -6,8 +6,8 @@ use crate::ray_query::RayTracer;
 use crate::stage::Stage;
 use crate::{Error, Figures, Method, Options, Shadow, Unavailable};
 use crate::{
-    carmack_preload, everitt_kilgard, eye_count, heidmann, lengyel, mcguire, near_caps, ours, planned, shadow_map,
-    zfail_finite,
+    carmack_preload, everitt_kilgard, eye_count, heidmann, inverted_test, lengyel, mcguire, near_caps, ours, planned,
+    shadow_map, zfail_finite,
 };
 use std::cell::OnceCell;
 use std::time::Instant;
@@ -125,10 +125,13 @@ fn procedure(
     match method {
         Method::HeidmannTwoPass => heidmann::two_pass(geometry, view, light),
         Method::HeidmannTwoSided => heidmann::two_sided(geometry, view, light),
+        Method::InvertedTest => inverted_test::procedure(geometry, view, light),
         Method::EyeCount => eye_count::procedure(geometry, view, light),
         Method::CarmackPreload => carmack_preload::procedure(geometry, view, light, &options.finite),
+        Method::CarmackPreloadNear => carmack_preload::near_view_plane(geometry, view, light, &options.finite),
         Method::FiniteZFail => zfail_finite::procedure(geometry, view, light, &options.finite),
         Method::NearCaps => near_caps::procedure(geometry, view, light),
+        Method::EverittKilgardTwoPass => everitt_kilgard::two_pass(geometry, view, light),
         _ => everitt_kilgard::procedure(geometry, view, light),
     }
 }

@@ -54,7 +54,7 @@ pub fn procedure(geometry: &Geometry, view: &View, light: &Light) -> Result<Proc
     });
     let on_ledge = Pass { list: 1, on_ledge: true, ..Pass::Z_PASS };
     let (lists, passes) = (vec![volumes, caps], vec![Pass::Z_PASS, on_ledge]);
-    Ok(Procedure { view: *view, start: 0, lists, passes, ledge: true })
+    Ok(Procedure { view: *view, start: 0, lists, passes, ledge: true, inverted: false })
 }
 
 /// Collects the triangles that close volumes, in clip space.

@@ -20,6 +20,8 @@ pub struct Procedure {
     pub passes: Vec<Pass>,
     /// Whether some depth in front of the near plane is kept free for passes that are [`Pass::on_ledge`].
     pub ledge: bool,
+    /// Whether what is not 0 is lit instead.
+    pub inverted: bool,
 }
 
 /// All of one list of volumes, drawn once.

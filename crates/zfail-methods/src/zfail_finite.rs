@@ -23,7 +23,7 @@ pub fn procedure(geometry: &Geometry, view: &View, light: &Light, options: &Fini
     let [extrusion, far] = ends(&geometry.bounds, view, options)?;
     let view = View { projection: with_far(view.projection, far), ..*view };
     let volumes = Volumes::new(geometry, &view, light, Extrusion::By(extrusion), Faces::All)?;
-    Ok(Procedure { view, start: 0, lists: vec![volumes], passes: vec![Pass::Z_FAIL], ledge: false })
+    Ok(Procedure { view, start: 0, lists: vec![volumes], passes: vec![Pass::Z_FAIL], ledge: false, inverted: false })
 }
 
 /// How far vertices are thrown, and where the far plane is. Without a choice, as a careful engine of the day has it: as

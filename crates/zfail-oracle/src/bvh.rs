@@ -189,6 +189,7 @@ mod tests {
             mesh: 0,
             world_from_object,
             casts_shadow: true,
+            receives_shadow: true,
         };
         let instances = places.iter().map(instance).collect();
         let mut soup = Soup::new(&Scene { meshes: vec![mesh], instances, ..Scene::default() });

@@ -119,10 +119,10 @@ impl Shader<'_> {
             doubts = doubts.map(Doubt::EdgeOn);
         }
         Shade {
-            lit: !nominal.any,
+            lit: !(nominal.any && triangle.receives),
             count: nominal.count,
             reached,
-            lit_doubt: doubts.lit,
+            lit_doubt: doubts.lit.filter(|_| triangle.receives),
             count_doubt: doubts.count,
             reach_doubt,
         }

@@ -37,6 +37,8 @@ pub(crate) struct Triangle {
     pub double_sided: bool,
     /// Blocks light, per-light exclusions aside.
     pub casts: bool,
+    /// Whether shadows fall on it.
+    pub receives: bool,
 }
 
 impl Triangle {
@@ -78,6 +80,7 @@ pub(crate) struct Placement {
     /// The largest element of `linear`.
     pub magnitude: f64,
     casts: bool,
+    receives: bool,
 }
 
 /// All opaque and masked triangles: blended ones are no surfaces, and here only if they block light.
@@ -132,6 +135,7 @@ impl Soup {
             masked: face.masked,
             double_sided: face.double_sided,
             casts: face.casts && place.casts && solid,
+            receives: place.receives,
         }
     }
 }
@@ -147,6 +151,7 @@ impl Placement {
             mirrored: linear.determinant() < 0.0,
             magnitude: columns.map(|column| column.abs().max_element()).into_iter().fold(0.0, f64::max),
             casts: instance.casts_shadow,
+            receives: instance.receives_shadow,
         }
     }
 }

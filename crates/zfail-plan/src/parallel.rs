@@ -24,6 +24,36 @@ pub(crate) fn for_each_piece<T: Send>(items: &mut [T], size: usize, work: impl F
     items.chunks_mut(size).enumerate().for_each(|(i, piece)| work(i * size, piece));
 }
 
+/// How many pieces of work are worth their threads for so many items, of which each takes about a microsecond.
+pub(crate) fn pieces(items: usize) -> usize {
+    /// Fewer are not worth a thread.
+    const FEW: usize = 64;
+    #[cfg(feature = "rayon")]
+    let threads = rayon::current_num_threads();
+    #[cfg(not(feature = "rayon"))]
+    let threads = 1;
+    threads.min(items / FEW).max(1)
+}
+
+/// Runs `work` on as many pieces of the items as there are memories, a memory for each, with the index of the first item.
+pub(crate) fn for_each_piece_with<T: Send, M: Send>(
+    items: &mut [T],
+    memories: &mut [M],
+    work: impl Fn(usize, &mut [T], &mut M) + Sync,
+) {
+    let size = items.len().div_ceil(memories.len().max(1)).max(1);
+    if items.len() <= size {
+        if let Some(memory) = memories.first_mut() {
+            work(0, items, memory);
+        }
+        return;
+    }
+    #[cfg(feature = "rayon")]
+    items.par_chunks_mut(size).zip(memories).enumerate().for_each(|(i, (piece, memory))| work(i * size, piece, memory));
+    #[cfg(not(feature = "rayon"))]
+    items.chunks_mut(size).zip(memories).enumerate().for_each(|(i, (piece, memory))| work(i * size, piece, memory));
+}
+
 /// Whether `test` holds for all pieces of so many items; it is given the index of the first.
 pub(crate) fn all_pieces<T: Sync>(items: &[T], size: usize, test: impl Fn(usize, &[T]) -> bool + Sync) -> bool {
     if items.len() <= size {

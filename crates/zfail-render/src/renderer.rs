@@ -346,8 +346,13 @@ mod tests {
             excluded: Vec::new(),
             shape: LightShape::default(),
         };
-        let instance =
-            Instance { name: String::new(), mesh: 0, world_from_object: DAffine3::IDENTITY, casts_shadow: true };
+        let instance = Instance {
+            name: String::new(),
+            mesh: 0,
+            world_from_object: DAffine3::IDENTITY,
+            casts_shadow: true,
+            receives_shadow: true,
+        };
         Scene {
             meshes: vec![mesh],
             materials: vec![material],

@@ -116,7 +116,7 @@ mod tests {
 
     fn instance(x: f64) -> Instance {
         let world_from_object = DAffine3::from_translation(DVec3::X * x);
-        Instance { name: String::new(), mesh: 0, world_from_object, casts_shadow: true }
+        Instance { name: String::new(), mesh: 0, world_from_object, casts_shadow: true, receives_shadow: true }
     }
 
     #[test]

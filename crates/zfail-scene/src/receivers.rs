@@ -110,6 +110,7 @@ mod tests {
             mesh: 0,
             world_from_object: DAffine3::from_translation(DVec3::Y * i as f64),
             casts_shadow: true,
+            receives_shadow: true,
         };
         Scene { meshes: vec![corner(100)], instances: (0..instances).map(instance).collect(), ..Scene::default() }
     }

@@ -56,6 +56,9 @@ pub struct Instance {
     pub world_from_object: DAffine3,
     /// Whether its triangles block light (node extras `castShadow`, inherited).
     pub casts_shadow: bool,
+    /// Whether shadows fall on it; a label or another annotation is lit whatever stands between it and a light (McGuire et al.
+    /// section 8; node extras `receiveShadow`, inherited).
+    pub receives_shadow: bool,
 }
 
 impl Scene {
@@ -131,7 +134,8 @@ mod tests {
             [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0], [9.0, 9.0]].map(|[x, y]| [x, y, 0.0]).to_vec();
         let mesh = Mesh { positions, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
         let world_from_object = DAffine3::from_rotation_z(std::f64::consts::FRAC_PI_4);
-        let instance = Instance { name: String::new(), mesh: 0, world_from_object, casts_shadow: false };
+        let instance =
+            Instance { name: String::new(), mesh: 0, world_from_object, casts_shadow: false, receives_shadow: true };
         let scene = Scene { meshes: vec![mesh], instances: vec![instance], ..Scene::default() };
         let half = |bounds: Bounds| bounds.half().truncate();
         assert!((half(scene.tight_bounds()) - glam::DVec2::splat(0.5_f64.sqrt())).length() < 1e-12);

@@ -34,6 +34,8 @@ pub(crate) struct FrameBuffers {
     pub indices: Buffer,
     pub draws: Buffer,
     records: Vec<DrawRecord>,
+    /// Bytes that the last frame wrote.
+    pub uploaded: u64,
 }
 
 impl FrameBuffers {
@@ -42,6 +44,7 @@ impl FrameBuffers {
             indices: buffer(device, "volume indices", BufferUsages::INDEX, 4096),
             draws: buffer(device, "volume draws", BufferUsages::STORAGE, size_of::<DrawRecord>() as u64),
             records: Vec::new(),
+            uploaded: 0,
         }
     }
 
@@ -62,11 +65,14 @@ impl FrameBuffers {
         let size = indices.len() as u64;
         if grow(device, &mut self.indices, "volume indices", size, BufferUsages::INDEX, limits.max_buffer_size)? {
             queue.write_buffer(&self.indices, 0, indices);
+            self.uploaded = size;
         } else {
+            self.uploaded = 0;
             // Everything else is there from earlier frames.
             for range in &plan.changed {
                 let bytes = bytemuck::cast_slice(&plan.indices[range.start as usize..range.end as usize]);
                 queue.write_buffer(&self.indices, u64::from(range.start) * size_of::<u32>() as u64, bytes);
+                self.uploaded += bytes.len() as u64;
             }
         }
         let records: &[u8] = bytemuck::cast_slice(&self.records);
@@ -75,6 +81,7 @@ impl FrameBuffers {
         let new = grow(device, &mut self.draws, "volume draws", size, BufferUsages::STORAGE, limit)?;
         if !records.is_empty() {
             queue.write_buffer(&self.draws, 0, records);
+            self.uploaded += size;
         }
         Ok(new)
     }

@@ -16,6 +16,13 @@ pub fn plan<'a>(prepared: &Prepared<'a>) -> &'a FramePlan {
     prepared.shadows.planner.last()
 }
 
+/// Bytes that preparing the frame wrote to the device: index lists that changed, and records of draws. What the tile pass and
+/// silhouettes on the device need comes on top.
+#[must_use]
+pub fn uploaded_bytes(prepared: &Prepared<'_>) -> u64 {
+    prepared.shadows.buffers.uploaded
+}
+
 /// Changes what the prepared frame draws: for figures of what goes wrong without a step, and for tests that see whether anyone
 /// would notice. Ranges of indices, scissors, z-pass and clear values may be changed, and draws emptied; indices, lights and
 /// transforms are on the device already, and so are the lists of the tile pass.

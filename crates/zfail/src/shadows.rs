@@ -182,6 +182,7 @@ impl Shadows {
         let same =
             |staged: &Staged| staged.is(frame) && staged.arena == self.arena.layout() && staged.costs == self.costs;
         if plan.unchanged && self.staged.as_ref().is_some_and(same) {
+            self.buffers.uploaded = 0;
             return Ok(());
         }
         self.first_positions.clear();

@@ -29,15 +29,29 @@ fn hard_scenes() {
         // The eye is in the light: Heidmann's case, and the control of the next ones.
         (&["builtin:room", "--light", "0"], &[]),
         // The near rectangle is in shadow (E&K section 2.2.2); as deep as the eye, which is all that Moller & Haines need.
-        (&["builtin:cathedral", "--light", "1"], &Z_PASS),
+        (&["builtin:cathedral", "--light", "1"], &[Z_PASS[0], Z_PASS[1], "inverted-test"]),
         // Volumes cut through the near rectangle: "no uniform adjustment" (McG section 3).
-        (&["builtin:nested", "--light", "0"], &[Z_PASS[0], Z_PASS[1], "eye-count"]),
+        (&["builtin:nested", "--light", "0"], &[Z_PASS[0], Z_PASS[1], "inverted-test", "eye-count"]),
         // The far plane cuts volumes off: "only moved the problem to the far clipping plane" (McG section 3).
-        (&["builtin:cathedral", "--light", "0", "--finite", "far=20"], &["carmack-preload", "finite-z-fail"]),
-        // 256 layers alias with none (E&K section 4.1), unless counts saturate, as Heidmann's do.
+        (
+            &["builtin:cathedral", "--light", "0", "--finite", "far=20"],
+            &["carmack-preload", "carmack-preload-near", "finite-z-fail"],
+        ),
+        // 256 layers alias with none (E&K section 4.1), unless counts saturate, as Heidmann's do; saturating from behind, as
+        // E&K section 3.3 prints it, what 255 cuts off is missing.
         (
             &["builtin:stacked", "--light", "1"],
-            &[Z_PASS[1], "eye-count", "carmack-preload", "finite-z-fail", "near-caps", "everitt-kilgard"],
+            &[
+                Z_PASS[1],
+                "inverted-test",
+                "eye-count",
+                "carmack-preload",
+                "carmack-preload-near",
+                "finite-z-fail",
+                "near-caps",
+                "everitt-kilgard-two-pass",
+                "everitt-kilgard",
+            ],
         ),
     ];
     let folder = tempfile::tempdir().unwrap();

@@ -38,6 +38,7 @@ fn with_disc(scene: &Scene) -> Scene {
         mesh: real.meshes.len() - 1,
         world_from_object: ground.world_from_disc(),
         casts_shadow: false,
+        receives_shadow: true,
     });
     real
 }

@@ -22,7 +22,13 @@ fn square(scene: &mut Scene, half: f32, place: DVec3, material: Material) {
     });
     scene.materials.push(material);
     let (mesh, world_from_object) = (scene.meshes.len() - 1, DAffine3::from_translation(place));
-    scene.instances.push(Instance { name: String::new(), mesh, world_from_object, casts_shadow });
+    scene.instances.push(Instance {
+        name: String::new(),
+        mesh,
+        world_from_object,
+        casts_shadow,
+        receives_shadow: true,
+    });
 }
 
 fn matt(color: [f32; 4]) -> Material {

@@ -34,6 +34,8 @@ pub(super) struct Visit {
     pub world_from_node: DAffine3,
     /// Neither this node nor an ancestor says `castShadow: false`.
     pub casts_shadow: bool,
+    /// The same of `receiveShadow`.
+    pub receives_shadow: bool,
     /// Neither this node nor one above is hidden (KHR_node_visibility).
     pub is_visible: bool,
 }
@@ -129,14 +131,15 @@ fn walk(nodes: &[Node], roots: &[usize], budget: &Budget, notices: &mut Vec<Stri
         let parent_from_node = local_transform(node, source, notices)?;
         let above = parent.map(|parent| &visits[parent]);
         let world_from_parent = above.map_or(DAffine3::IDENTITY, |above| above.world_from_node);
-        let own = source.extras.get("castShadow").and_then(serde_json::Value::as_bool);
+        let own = |word: &str| source.extras.get(word).and_then(serde_json::Value::as_bool) != Some(false);
         let visit = Visit {
             node,
             parent,
             end: visits.len() + 1,
             parent_from_node,
             world_from_node: moderate(node, world_from_parent * parent_from_node)?,
-            casts_shadow: above.is_none_or(|above| above.casts_shadow) && own != Some(false),
+            casts_shadow: above.is_none_or(|above| above.casts_shadow) && own("castShadow"),
+            receives_shadow: above.is_none_or(|above| above.receives_shadow) && own("receiveShadow"),
             is_visible: above.is_none_or(|above| above.is_visible) && source.extensions.visibility.visible,
         };
         let here = visits.len();

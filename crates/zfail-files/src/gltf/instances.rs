@@ -163,9 +163,9 @@ impl Placer<'_> {
                 return Ok(());
             }
         };
-        let casts_shadow = site.visit.casts_shadow;
+        let (casts_shadow, receives_shadow) = (site.visit.casts_shadow, site.visit.receives_shadow);
         self.shown[site.pose].push(self.scene.instances.len());
-        self.scene.instances.push(Instance { name, mesh, world_from_object, casts_shadow });
+        self.scene.instances.push(Instance { name, mesh, world_from_object, casts_shadow, receives_shadow });
         Ok(())
     }
 

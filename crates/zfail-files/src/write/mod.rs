@@ -4,7 +4,7 @@
 //!
 //! Numbers keep their full precision, so that the file's triangles are the scene's bit for bit. Extensions:
 //! KHR_lights_punctual, KHR_texture_transform, KHR_materials_emissive_strength and KHR_materials_unlit, each only if
-//! needed and none required. What glTF has no word for goes into extras: `castShadow` on the nodes of meshes; `shadowExclude`,
+//! needed and none required. What glTF has no word for goes into extras: `castShadow` and `receiveShadow` on the nodes of meshes; `shadowExclude`,
 //! `falloff`, `cookie` and `box` on the nodes of lights; `ambient` and `background` on the scene.
 
 mod attributes;

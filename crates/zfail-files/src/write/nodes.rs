@@ -20,8 +20,10 @@ pub(super) fn write(document: &mut Document, scene: &Scene, mesh_of: &[Option<us
         if let Some(mesh) = mesh_of[instance.mesh] {
             node["mesh"] = json!(mesh);
         }
-        if !instance.casts_shadow {
-            node["extras"] = json!({ "castShadow": false });
+        for (word, holds) in [("castShadow", instance.casts_shadow), ("receiveShadow", instance.receives_shadow)] {
+            if !holds {
+                node["extras"][word] = json!(false);
+            }
         }
         document.place(node, &instance.world_from_object);
     }

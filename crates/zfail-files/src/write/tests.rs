@@ -77,7 +77,13 @@ fn sampler() -> Scene {
     let place = |name: &str, mesh, matrix3: DMat3, casts_shadow| {
         let translation = DVec3::new(1e6 + 1.0 / 3.0, 0.1, -7.0);
         let world_from_object = DAffine3 { matrix3, translation };
-        Instance { name: name.into(), mesh, world_from_object, casts_shadow }
+        Instance {
+            name: name.into(),
+            mesh,
+            world_from_object,
+            casts_shadow,
+            receives_shadow: name.len().is_multiple_of(2),
+        }
     };
     let light = |name: &str, kind, excluded| Light {
         name: name.into(),
@@ -200,7 +206,7 @@ fn assert_same(before: &Scene, after: &Scene, rounding: f64) {
         let world_from_mesh = b.world_from_object * DAffine3::from_translation(origin);
         assert!(a.world_from_object.abs_diff_eq(world_from_mesh, rounding), "{}", b.name);
         assert!(a.name.starts_with(&b.name), "{} instead of {}", a.name, b.name);
-        assert_eq!(a.casts_shadow, b.casts_shadow, "{}", b.name);
+        assert_eq!((a.casts_shadow, a.receives_shadow), (b.casts_shadow, b.receives_shadow), "{}", b.name);
     }
     let materials = |scene: &Scene| format!("{:?}", scene.materials.iter().map(rounded).collect::<Vec<_>>());
     assert_eq!(materials(after), materials(before));

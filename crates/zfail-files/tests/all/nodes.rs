@@ -206,11 +206,12 @@ fn flattened_nodes_are_baked() {
 #[test]
 fn cast_shadow_is_inherited() {
     let scene = with_nodes(json!([
-        {"name": "a", "mesh": 0, "children": [1, 2]}, {"name": "b", "mesh": 0, "extras": {"castShadow": false}, "children": [3]},
-        {"name": "c", "mesh": 0, "extras": {"castShadow": true}}, {"name": "d", "mesh": 0, "extras": {"castShadow": true}},
+        {"name": "a", "mesh": 0, "children": [1, 2]}, {"name": "b", "mesh": 0, "extras": {"castShadow": false, "receiveShadow": false}, "children": [3]},
+        {"name": "c", "mesh": 0, "extras": {"castShadow": true, "receiveShadow": true}}, {"name": "d", "mesh": 0, "extras": {"castShadow": true, "receiveShadow": true}},
         {"name": "e", "mesh": 0, "extras": "text"}
     ]))
     .scene();
+    assert!(scene.instances.iter().all(|i| i.receives_shadow == i.casts_shadow), "one is inherited as the other");
     let casts: Vec<_> = scene.instances.iter().map(|i| (i.name.as_str(), i.casts_shadow)).collect();
     assert_eq!(casts, [("a", true), ("b", false), ("d", false), ("c", true), ("e", true)]);
 }

@@ -67,12 +67,16 @@ impl Stage {
         let passes: Vec<Ready<'_>> =
             procedure.passes.iter().map(|pass| self.ready(gpu, &lists, *pass, false)).collect();
         let ledge = if procedure.ledge { LEDGE } else { 0.0 };
-        let (mask, render_ms) =
+        let (mut mask, render_ms) =
             self.play(gpu, geometry, &procedure.view, procedure.start, ledge, &placements, |render_pass| {
                 for ready in &passes {
                     ready.encode(render_pass, procedure, ledge);
                 }
             })?;
+        if procedure.inverted {
+            // As `NotEqual` for `Equal` would have it; what is no surface is left out afterwards.
+            mask.iter_mut().for_each(|verdict| *verdict = 255 - *verdict);
+        }
         let counted: Vec<Ready<'_>> =
             procedure.passes.iter().map(|pass| self.ready(gpu, &lists, *pass, true)).collect();
         let fragments = self.count(gpu, procedure.view.size, &placements, |render_pass| {

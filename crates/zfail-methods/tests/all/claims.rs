@@ -103,6 +103,39 @@ fn caps_on_the_near_plane_crack() {
     assert_eq!(case.wrong(Method::EverittKilgard), 0);
 }
 
+/// C: "inverting the test when the view is inside a shadow volume ... is not a robust solution".
+#[test]
+fn an_inverted_test_tells_one_volume_from_none() {
+    let Some(gpu) = gpu() else { return };
+    let mut scene = Scene::default();
+    plate(&mut scene, DVec3::ZERO, 6.0);
+    plate(&mut scene, DVec3::Y * 3.0, 2.5);
+    scene.lights.push(point(DVec3::Y * 5.0));
+    let view = look(DVec3::new(0.0, 1.0, 2.0), DVec3::new(0.0, 0.0, -2.0), 0.1);
+    let mut one = Case::new(&gpu, &scene, view);
+    assert!(one.wrong(Method::HeidmannTwoSided) > 4000);
+    assert_eq!(one.wrong(Method::InvertedTest), 0, "the eye is in one volume, and no other is in sight");
+    // A second one in sight: its count lights what both darken.
+    plate(&mut scene, DVec3::new(0.0, 0.5, -1.5), 0.5);
+    let mut two = Case::new(&gpu, &scene, view);
+    exact_where_others_fail(&mut two, &[Method::InvertedTest]);
+    assert_eq!(two.wrong(Method::EyeCount), 0, "the number in the bit's place");
+    exact_where_others_fail(&mut Case::builtin(&gpu, "nested", 0), &[Method::InvertedTest]);
+}
+
+/// C, of the preload: "which I would only apply on surfaces that were likely to intersect the view plane".
+#[test]
+fn volumes_clear_of_the_view_plane_need_no_preload() {
+    let Some(gpu) = gpu() else { return };
+    for (name, light) in [("cathedral", 0), ("cathedral", 1), ("nested", 0), ("staircase", 0)] {
+        let mut case = Case::builtin(&gpu, name, light);
+        let of = |case: &mut Case<'_>, method| case.shadow(method, 0, &Options::default()).expect("a mask");
+        let (all, near) = (of(&mut case, Method::CarmackPreload), of(&mut case, Method::CarmackPreloadNear));
+        assert_eq!(all.mask, near.mask, "{name}");
+        assert!(near.figures.fragments < all.figures.fragments, "{name}");
+    }
+}
+
 /// E&K 4.1: saturation is worse than wrapping, but "a net 2^N increments ... may alias with the unshadowed zero stencil
 /// value"; 3.1: 2^N has to be "greater than the maximum shadow depth count".
 #[test]
@@ -111,6 +144,9 @@ fn eight_bits_are_not_enough_for_256_layers() {
     let mut thousand = Case::builtin(&gpu, "stacked", 0);
     let (saturating, wrapping) = (thousand.wrong(Method::HeidmannTwoPass), thousand.wrong(Method::HeidmannTwoSided));
     assert!(saturating > 10 * wrapping && wrapping > 0, "{saturating} and {wrapping}");
+    // The same from behind, as section 3.3 prints it.
+    let (printed, wrapping) = (thousand.wrong(Method::EverittKilgardTwoPass), thousand.wrong(Method::EverittKilgard));
+    assert!(printed > 10 * wrapping && wrapping > 0, "{printed} and {wrapping}");
     let mut layers = Case::builtin(&gpu, "stacked", 1);
     exact_where_others_fail(&mut layers, &[Method::HeidmannTwoSided, Method::FiniteZFail, Method::EverittKilgard]);
 }

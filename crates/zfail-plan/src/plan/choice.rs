@@ -7,10 +7,11 @@ use super::occluders::Occlusion;
 use super::off_screen::{self, Parts};
 use super::pair::{Pair, Role};
 use super::reach::Reach;
-use super::receivers::Receivers;
+use super::receivers::{Looking, Receivers};
 use super::stage::Stage;
 use super::z_pass;
 use super::{Culled, LightPlan, PlanError, ZPass};
+use crate::parallel;
 use crate::scissor::{self, Rectangle};
 use glam::DVec4;
 
@@ -20,14 +21,24 @@ pub(super) struct Choice {
     reach: Reach,
     receivers: Receivers,
     occlusion: Occlusion,
+    threads: Vec<Thread>,
+}
+
+/// Memory of one thread.
+#[derive(Debug, Default)]
+struct Thread {
+    looking: Looking,
+    /// The caster with a transform that cannot be inverted.
+    singular: Option<u32>,
 }
 
 impl Choice {
     /// Takes what is the same for all lights of a frame.
     pub fn begin(&mut self, stage: &Stage<'_>) {
-        if self.bounds_receivers(stage) {
-            self.receivers.fit(stage.input.receivers);
+        if bounds_receivers(stage) {
+            self.receivers.fit(stage.input.receivers, stage.placed.len());
         }
+        self.threads.resize_with(parallel::pieces(stage.placed.len()), Thread::default);
     }
 
     /// Gives the pairs of light `l` their roles.
@@ -38,66 +49,83 @@ impl Choice {
         pairs: &mut [Pair],
         plan: &mut LightPlan,
     ) -> Result<(), PlanError> {
+        let Self { reach, receivers, occlusion, threads } = self;
         let view = stage.view();
         if stage.steps.reach {
-            self.reach.set(stage.light(l), view.eye());
+            reach.set(stage.light(l), view.eye());
         } else {
-            self.reach.clear();
+            reach.clear();
         }
-        plan.begin(self.reach.scissor(view));
-        if self.bounds_receivers(stage) {
-            self.receivers.set(view, &self.reach);
+        plan.begin(reach.scissor(view));
+        if bounds_receivers(stage) {
+            receivers.set(view, reach);
         }
         let relative = stage.relative_light(l);
-        for (c, pair) in pairs.iter_mut().enumerate() {
-            pair.start = NearCount::default();
-            pair.role = match self.pixels(stage, l, c, relative, plan.scissor) {
-                Ok(within) => {
-                    let caster = &stage.placed[c];
-                    let singular = PlanError::Singular { caster: caster.caster as usize };
-                    pair.aim(caster, &stage.light(l).kind).ok_or(singular)?;
-                    role(stage, c, pair, within)
-                }
-                Err(reason) => Role::Culled(reason),
-            };
+        threads.iter_mut().for_each(|thread| thread.singular = None);
+        parallel::for_each_piece_with(pairs, threads, |first, pairs, thread| {
+            for (c, pair) in (first..).zip(pairs) {
+                pair.start = NearCount::default();
+                let within = within(stage, l, c, relative, plan.scissor, reach, receivers, &mut thread.looking);
+                let caster = &stage.placed[c];
+                pair.role = match within {
+                    Ok(_) if pair.aim(caster, &stage.light(l).kind).is_none() => {
+                        thread.singular = thread.singular.or(Some(caster.caster));
+                        Role::default()
+                    }
+                    Ok(within) => role(stage, c, pair, within),
+                    Err(reason) => Role::Culled(reason),
+                };
+            }
+        });
+        if let Some(caster) = threads.iter().find_map(|thread| thread.singular) {
+            return Err(PlanError::Singular { caster: caster as usize });
         }
         if stage.steps.z_pass == ZPass::ByLight {
             z_pass::all_or_none(pairs);
         }
-        self.occlusion.leave_out(stage, relative, pairs);
+        occlusion.leave_out(stage, relative, pairs);
         Ok(())
     }
 
-    fn bounds_receivers(&self, stage: &Stage<'_>) -> bool {
-        stage.steps.receivers && !stage.input.receivers.is_empty()
+    /// The same for a light under which nothing has changed since the last frame.
+    pub fn keep(pairs: &mut [Pair], plan: &mut LightPlan) {
+        plan.begin(plan.scissor);
+        pairs.iter_mut().for_each(|pair| pair.moves = 0);
     }
+}
 
-    /// The pixels in which caster `c` may matter, or why there are none.
-    fn pixels(
-        &mut self,
-        stage: &Stage<'_>,
-        l: usize,
-        c: usize,
-        relative: DVec4,
-        scissor: Option<Rectangle>,
-    ) -> Result<Rectangle, Culled> {
-        let caster = &stage.placed[c];
-        if stage.light(l).excluded.contains(&(caster.caster as usize)) {
-            return Err(Culled::Excluded);
-        }
-        if caster.bounds.is_empty() {
-            return Err(Culled::Empty);
-        }
-        let within = scissor.ok_or(Culled::LightOffScreen)?;
-        if stage.steps.reach && self.reach.excludes(&caster.world, caster.center, caster.axes) {
-            return Err(Culled::OutOfReach);
-        }
-        if !self.bounds_receivers(stage) {
-            return Ok(within);
-        }
-        let shadowed = self.receivers.shadowed(stage.view(), &caster.corners, relative);
-        shadowed.and_then(|pixels| scissor::intersection(within, pixels)).ok_or(Culled::NoReceiver)
+fn bounds_receivers(stage: &Stage<'_>) -> bool {
+    stage.steps.receivers && !stage.input.receivers.is_empty()
+}
+
+/// The pixels in which caster `c` may matter, or why there are none.
+#[expect(clippy::too_many_arguments, reason = "what it depends on")]
+fn within(
+    stage: &Stage<'_>,
+    l: usize,
+    c: usize,
+    relative: DVec4,
+    scissor: Option<Rectangle>,
+    reach: &Reach,
+    receivers: &Receivers,
+    looking: &mut Looking,
+) -> Result<Rectangle, Culled> {
+    let caster = &stage.placed[c];
+    if stage.light(l).excluded.contains(&(caster.caster as usize)) {
+        return Err(Culled::Excluded);
     }
+    if caster.bounds.is_empty() {
+        return Err(Culled::Empty);
+    }
+    let within = scissor.ok_or(Culled::LightOffScreen)?;
+    if stage.steps.reach && reach.excludes(&caster.world, caster.center, caster.axes) {
+        return Err(Culled::OutOfReach);
+    }
+    if !bounds_receivers(stage) {
+        return Ok(within);
+    }
+    let shadowed = receivers.shadowed(looking, stage.view(), &caster.corners, relative);
+    shadowed.and_then(|pixels| scissor::intersection(within, pixels)).ok_or(Culled::NoReceiver)
 }
 
 /// What a caster that matters in pixels `within` draws; nothing if no part of its volume comes into view.

@@ -140,7 +140,7 @@ pub enum PlanError {
 }
 
 /// One caster's volume, or a closed piece of it, for one light.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Draw {
     /// Index into the frame's casters.
     pub caster: u32,

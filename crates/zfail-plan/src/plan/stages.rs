@@ -36,6 +36,8 @@ struct Light {
     batching: Batching,
     /// The most layers of pairs on the device, if there are such pairs.
     layers: Option<usize>,
+    /// Whether everything is as in the frame before, so that what was chosen stays.
+    unchanged: bool,
 }
 
 impl Planner {
@@ -71,7 +73,11 @@ impl Planner {
     /// # Errors
     /// As [`Self::plan`].
     pub fn plan_extracting(&mut self, input: &Input<'_>, extractable: &[bool]) -> Result<&FramePlan, PlanError> {
-        if self.unchanged.is(input, extractable) {
+        let alike = self.unchanged.is_but_for_lights(input, extractable);
+        for (l, light) in self.lights.iter_mut().enumerate() {
+            light.unchanged = alike && self.unchanged.has_light(input, l);
+        }
+        if alike && self.lights.iter().all(|light| light.unchanged) {
             self.rest();
             return Ok(&self.plan);
         }
@@ -141,7 +147,11 @@ impl Planner {
         }
         self.choice.begin(stage);
         for (l, (light, plan)) in self.lights.iter_mut().zip(&mut self.plan.lights).enumerate() {
-            self.choice.choose(stage, l, &mut light.pairs, plan)?;
+            if light.unchanged {
+                Choice::keep(&mut light.pairs, plan);
+            } else {
+                self.choice.choose(stage, l, &mut light.pairs, plan)?;
+            }
         }
         self.extract(stage, extractable);
         self.weigh(stage);
@@ -173,7 +183,7 @@ impl Planner {
             return;
         }
         self.weigh(stage);
-        for (l, Light { pairs, batching, layers }) in self.lights.iter_mut().enumerate() {
+        for (l, Light { pairs, batching, layers, .. }) in self.lights.iter_mut().enumerate() {
             let Some(most) = *layers else { continue };
             if !batching.has_room_for(most, stage, l, pairs) {
                 for pair in pairs.iter_mut().filter(|pair| pair.on_device) {

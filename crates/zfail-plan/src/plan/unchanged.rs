@@ -3,7 +3,7 @@
 //! In: frames. Out: whether everything that the last plan depends on is still the same, by comparison element by element. That
 //! costs a few nanoseconds per caster; deciding again that nothing has to be decided costs a thousand times as much.
 
-use super::{Counting, Input, Steps};
+use super::{Counting, Input, ShadowLight, Steps};
 use crate::bounds::{Bounds, OrientedBox};
 use crate::light::LightKind;
 use crate::view::View;
@@ -23,14 +23,19 @@ pub(super) struct Unchanged {
 }
 
 impl Unchanged {
-    /// Whether a frame is the one that was kept.
-    pub fn is(&self, input: &Input<'_>, extractable: &[bool]) -> bool {
+    /// Whether a frame is the one that was kept, but for its lights.
+    pub fn is_but_for_lights(&self, input: &Input<'_>, extractable: &[bool]) -> bool {
         self.fixed == Some((*input.view, input.steps, input.counting))
             && self.extractable == extractable
-            && self.lights.iter().copied().eq(lights(input))
+            && self.lights.len() == input.lights.len()
             && self.excluded.iter().copied().eq(excluded(input))
             && self.casters.iter().copied().eq(casters(input))
             && self.receivers == input.receivers
+    }
+
+    /// Whether light `l` is the one that was kept.
+    pub fn has_light(&self, input: &Input<'_>, l: usize) -> bool {
+        self.lights.get(l) == Some(&light(&input.lights[l]))
     }
 
     /// Keeps a frame.
@@ -61,7 +66,11 @@ fn casters(input: &Input<'_>) -> impl Iterator<Item = (u64, DAffine3)> {
 }
 
 fn lights(input: &Input<'_>) -> impl Iterator<Item = (LightKind, Option<OrientedBox>, usize)> {
-    input.lights.iter().map(|light| (light.kind, light.bounds, light.excluded.len()))
+    input.lights.iter().map(light)
+}
+
+fn light(light: &ShadowLight<'_>) -> (LightKind, Option<OrientedBox>, usize) {
+    (light.kind, light.bounds, light.excluded.len())
 }
 
 fn excluded(input: &Input<'_>) -> impl Iterator<Item = usize> {

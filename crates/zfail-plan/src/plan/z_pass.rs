@@ -31,6 +31,8 @@ pub(super) fn count_from_near_rectangle(stage: &Stage<'_>, light: &mut LightPlan
     let Some(scissor) = light.scissor.filter(|_| stage.steps.near_count) else { return };
     let mut sum = 0;
     for (c, pair) in pairs.iter_mut().enumerate() {
+        // Also of those for which it was known before.
+        sum += pair.start.layers;
         let Role::Active { within, parts, z_pass: false } = pair.role else { continue };
         if pair.on_device {
             continue;

@@ -9,3 +9,4 @@ mod layers;
 mod shapes;
 mod stacks;
 mod topology;
+mod walks;

@@ -6,7 +6,7 @@ use crate::{Gpu, RenderError};
 use bytemuck::Pod;
 use zfail_plan::glam::{DAffine3, DMat3, DVec3};
 use zfail_plan::view::{Projection, View};
-use zfail_scene::{Ground, Sky};
+use zfail_scene::{Ground, Instance, Sky};
 
 /// Data of a frame, on the device. The buffers grow to the largest frame seen.
 #[derive(Debug)]
@@ -70,7 +70,7 @@ impl FrameData {
         layouts: &Layouts,
         view: &View,
         shading: &Shading<'_>,
-        instances: impl Iterator<Item = &'i DAffine3>,
+        instances: impl Iterator<Item = &'i Instance>,
         reaches: impl Fn(usize, usize) -> bool,
     ) -> Result<(), RenderError> {
         let lights = shading.lights;
@@ -106,16 +106,17 @@ impl FrameData {
 
         self.records.clear();
         self.listed.clear();
-        for (i, world_from_object) in instances.enumerate() {
+        for (i, instance) in instances.enumerate() {
             let start = self.listed.len() as u32;
             if lights.len() > UNROLLED {
                 self.listed.extend((0..lights.len()).filter(|&l| reaches(l, i)).map(|l| l as u32));
             }
-            self.records.push(record(view, world_from_object, [start, self.listed.len() as u32]));
+            let range = [start, self.listed.len() as u32];
+            self.records.push(record(view, &instance.world_from_object, range, !instance.receives_shadow));
         }
         if let Some(ground) = shading.ground {
             let end = self.listed.len() as u32;
-            self.records.push(record(view, &ground.world_from_disc(), [end; 2]));
+            self.records.push(record(view, &ground.world_from_disc(), [end; 2], false));
         }
         let usage = wgpu::BufferUsages::STORAGE;
         let lights: &[LightRecord] = match shading.other_lights {
@@ -134,7 +135,7 @@ impl FrameData {
     }
 }
 
-fn record(view: &View, world_from_object: &DAffine3, lights: [u32; 2]) -> InstanceRecord {
+fn record(view: &View, world_from_object: &DAffine3, lights: [u32; 2], exempt: bool) -> InstanceRecord {
     let view_from_object = view.view_from_object(world_from_object);
     let m = view_from_object.matrix3;
     let row = |i: usize| m.row(i).extend(view_from_object.translation[i]).as_vec4().to_array();
@@ -143,7 +144,7 @@ fn record(view: &View, world_from_object: &DAffine3, lights: [u32; 2]) -> Instan
         view_from_object: [row(0), row(1), row(2)],
         normal: normal_matrix(&m).as_mat3().to_cols_array_2d(),
         lights,
-        pad: 0,
+        exempt: u32::from(exempt),
     }
 }
 

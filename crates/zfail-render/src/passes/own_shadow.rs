@@ -62,7 +62,8 @@ impl OwnShadow {
             };
             mesh.bind(pass, Vertices::Plain, &frame.instances);
             for slot in draw.slots.clone() {
-                if scene.casts(scene.draws.order[slot as usize], of_scene) {
+                let instance = scene.draws.order[slot as usize];
+                if scene.casts(instance, of_scene) && scene.instances[instance].receives_shadow {
                     pass.draw_indexed(part.indices.clone(), 0, slot..slot + 1);
                 }
             }

@@ -32,7 +32,7 @@ impl Renderer<'_> {
             self.measured = None;
             self.measured = Some(Measured {
                 attributes: AttributePass::default(),
-                shadow: ShadowPass::new(gpu, &self.scene.shadows),
+                shadow: ShadowPass::new(gpu, &self.layouts, &self.scene.shadows),
                 mask: MaskPass::new(gpu, &self.layouts),
                 targets: Attributes::new(gpu, &self.layouts, view.size)?,
             });
@@ -43,8 +43,8 @@ impl Renderer<'_> {
         };
         self.scene.arrange(gpu, view);
         let exposed = Exposed::new(&self.scene, &chosen, settings.exposure, view);
-        let placements = self.scene.draws.order.iter().map(|&i| &self.scene.instances[i].world_from_object);
-        self.frame.update(gpu, &self.layouts, view, &exposed.shading(), placements, |_, _| true)?;
+        let instances = self.scene.draws.order.iter().map(|&i| &self.scene.instances[i]);
+        self.frame.update(gpu, &self.layouts, view, &exposed.shading(), instances, |_, _| true)?;
         let encoder = || gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
 
         let mut first = encoder();
@@ -72,7 +72,8 @@ impl Renderer<'_> {
                     prepared = Some(frame.count_tiles(&mut encoder, depth));
                 }
                 if let Some(prepared) = &prepared {
-                    shadow.encode(&mut encoder, targets, prepared, light);
+                    let exempt = (counting == Counting::Verdict).then_some((&self.frame, &self.scene));
+                    shadow.encode(&mut encoder, targets, prepared, light, exempt);
                 }
                 let casting = settings.shadows.then_some((&self.scene, of_scene));
                 images.push(mask.read(gpu, encoder, targets, &self.frame, light as u32, what, casting)?);

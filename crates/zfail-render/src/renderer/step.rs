@@ -47,7 +47,7 @@ impl Renderer<'_> {
             layouts,
             view,
             &shading,
-            scene.draws.order.iter().map(|&i| &scene.instances[i].world_from_object),
+            scene.draws.order.iter().map(|&i| &scene.instances[i]),
             |l, slot| frame_lights[lights[l]].reaches(&scene.instance_bounds[scene.draws.order[slot]]),
         )?;
         let targets = self.targets.as_mut().ok_or_else(no_targets)?;
@@ -56,7 +56,9 @@ impl Renderer<'_> {
         let shadowed = spans.shadows && part.solid || layered;
         // Drawing everything twice is cheaper than a texture of verdicts unless there is more to draw than to fill.
         let few = scene.draws.solid_triangles() < view.size[0] * view.size[1] / 8;
-        let shadows = match (shadowed, records.len() == 1 && samples == 1 && few && !layered) {
+        // What is lit whatever stands in the way passes over the bits; it cannot pass over the stencil.
+        let stencil = records.len() == 1 && samples == 1 && few && !layered && !scene.has_exempt();
+        let shadows = match (shadowed, stencil) {
             (false, _) => Shadows::None,
             (true, true) => Shadows::Stencil,
             (true, false) => Shadows::Bits,

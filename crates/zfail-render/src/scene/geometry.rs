@@ -56,7 +56,7 @@ const ALL: [Option<wgpu::VertexBufferLayout<'static>>; 5] = [
         5 => Float32x4, 6 => Float32x4, 7 => Float32x4, 8 => Float32x4,
         9 => Float32x4, 10 => Float32x4, 11 => Float32x4,
         12 => Float32x3, 13 => Float32x3, 14 => Float32x3,
-        15 => Uint32x2
+        15 => Uint32x3
     ]),
     per_vertex(4, &wgpu::vertex_attr_array![1 => Float32x4]),
     per_vertex(8, &wgpu::vertex_attr_array![3 => Float32x4, 4 => Float32x4]),

@@ -43,7 +43,8 @@ pub struct InstanceRecord {
     pub normal: [[f32; 3]; 3],
     /// Range of the lists of lights.
     pub lights: [u32; 2],
-    pub pad: u32,
+    /// 1 where no shadow falls on it, 0 elsewhere.
+    pub exempt: u32,
 }
 
 /// `Slot` in `material.wgsl`.

@@ -185,6 +185,11 @@ impl SceneOnGpu {
         Ok(())
     }
 
+    /// Whether there is anything on which no shadow falls.
+    pub fn has_exempt(&self) -> bool {
+        self.instances.iter().any(|instance| !instance.receives_shadow)
+    }
+
     /// Whether instance `instance` blocks light number `light`.
     pub fn casts(&self, instance: usize, light: usize) -> bool {
         self.caster_of[instance].is_some() && !self.lights[light].excluded.contains(&instance)

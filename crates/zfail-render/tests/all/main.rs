@@ -2,6 +2,7 @@
 
 mod blended;
 mod edited;
+mod exempt;
 mod frame;
 mod ground;
 mod layers;

@@ -253,7 +253,7 @@ fn the_box_of_a_light_bounds_its_casters_too() {
     };
     let (all, truth) = drawn(&scene, Technique::EverittKilgard);
     let (few, mask) = drawn(&scene, Technique::Mcguire);
-    assert_eq!((all, few), (8, 3));
+    assert_eq!((all, few), (8, 2));
     assert!(mask == truth && mask.contains(&255));
     // The ball around the box holds more.
     let mut ball = scene.clone();

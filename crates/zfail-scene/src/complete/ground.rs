@@ -77,6 +77,12 @@ pub(super) fn add(scene: &mut Scene, ground: &Ground) {
     let grey = Material { base_color: [0.5, 0.5, 0.5, 1.0], metallic: 0.0, roughness: 1.0, ..Material::default() };
     scene.materials.push(Material { name: mesh.name.clone(), ..grey });
     let (name, world_from_object) = (mesh.name.clone(), ground.world_from_disc());
-    scene.instances.push(Instance { name, mesh: scene.meshes.len(), world_from_object, casts_shadow: false });
+    scene.instances.push(Instance {
+        name,
+        mesh: scene.meshes.len(),
+        world_from_object,
+        casts_shadow: false,
+        receives_shadow: true,
+    });
     scene.meshes.push(mesh);
 }

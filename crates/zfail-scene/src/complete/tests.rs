@@ -18,6 +18,7 @@ fn add_box(scene: &mut Scene, min: [f32; 3], max: [f32; 3], inwards: bool) {
         mesh: scene.meshes.len(),
         world_from_object: DAffine3::IDENTITY,
         casts_shadow: true,
+        receives_shadow: true,
     };
     scene.meshes.push(mesh);
     scene.instances.push(instance);

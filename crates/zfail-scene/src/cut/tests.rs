@@ -360,6 +360,7 @@ fn meshes_beyond_the_limits_are_cut_coarsely_or_not_at_all() {
             mesh: 0,
             world_from_object: DAffine3::from_scale(DVec3::splat(2.0)),
             casts_shadow: true,
+            receives_shadow: true,
         });
         let cuts = cut_masked(&mut scene, 0.05, limits);
         (cuts.first().map(|cut| cut.tolerance), scene.meshes[0].triangles.len() as u64, scene.notices)

@@ -5,8 +5,13 @@ use std::f64::consts::PI;
 
 /// Two instances, a light and a camera.
 fn scene() -> Scene {
-    let instance =
-        || Instance { name: String::new(), mesh: 0, world_from_object: DAffine3::IDENTITY, casts_shadow: true };
+    let instance = || Instance {
+        name: String::new(),
+        mesh: 0,
+        world_from_object: DAffine3::IDENTITY,
+        casts_shadow: true,
+        receives_shadow: true,
+    };
     let light = Light {
         name: "lamp".into(),
         kind: LightKind::Point { position: DVec3::Y, range: 2.0 },

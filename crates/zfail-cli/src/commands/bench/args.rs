@@ -1,5 +1,6 @@
 //! The arguments of `zfail bench`.
 
+use super::host::{Boxes, Moves};
 use crate::groups::{Device, Loading, Size, Sunlight, Verbosity, parse_fps, parse_samples, technique_parser};
 use zfail_render::Technique;
 
@@ -31,6 +32,26 @@ pub struct Args {
     /// Instead of frames, measure how planning grows with the number of triangles, up to a million.
     #[arg(long, conflicts_with_all = ["scenes", "frames", "fps", "size", "samples", "techniques"])]
     pub scaling: bool,
+    /// Instead of frames, measure what shadows cost the CPU with many casters, on a device that does nothing.
+    #[arg(long, conflicts_with_all = ["scenes", "fps", "size", "samples", "scaling"])]
+    pub host: bool,
+    /// Numbers of casters for --host.
+    #[arg(long, value_name = "A,B", value_delimiter = ',', default_values_t = [100, 1000], requires = "host")]
+    #[arg(value_parser = clap::value_parser!(usize))]
+    pub casters: Vec<usize>,
+    /// Numbers of lights for --host.
+    #[arg(long, value_name = "A,B", value_delimiter = ',', default_values_t = [1, 4], requires = "host")]
+    #[arg(value_parser = clap::value_parser!(usize))]
+    pub lights: Vec<usize>,
+    /// What is another in every frame, for --host.
+    #[arg(long, value_name = "A,B", value_delimiter = ',', requires = "host")]
+    #[arg(default_values_t = [Moves::Nothing, Moves::Camera, Moves::Light, Moves::Tenth, Moves::All])]
+    #[arg(value_enum)]
+    pub moves: Vec<Moves>,
+    /// Boxes around what can be seen, for --host: one, or one for each caster.
+    #[arg(long, value_name = "A,B", value_delimiter = ',', default_values_t = [Boxes::Scene, Boxes::Each])]
+    #[arg(value_enum, requires = "host")]
+    pub receivers: Vec<Boxes>,
     #[command(flatten)]
     pub sunlight: Sunlight,
     #[command(flatten)]

@@ -2,10 +2,11 @@
 //!
 //! In: `args`. Out: a table, or JSON. Data flow: `scenes` (what is played) -> `measure` (timings of every variant,
 //! interleaved) -> `record` (their spread) -> `table`. `scaling` is a measurement of its own, of planning
-//! alone, and of `extraction`: silhouettes from the CPU and from the device.
+//! alone, and of `extraction`: silhouettes from the CPU and from the device. `host` is another, of the CPU's part of a frame.
 
 mod args;
 mod extraction;
+mod host;
 mod measure;
 mod record;
 mod scaling;
@@ -25,7 +26,11 @@ use scenes::Course;
 /// # Errors
 /// If a scene or the device fails, or standard output cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
-    if args.scaling { planning(args) } else { frames(args) }
+    match (args.scaling, args.host) {
+        (true, _) => planning(args),
+        (_, true) => hosting(args),
+        _ => frames(args),
+    }
 }
 
 /// How planning grows.
@@ -35,6 +40,12 @@ fn planning(args: &Args) -> Result<(), Error> {
     let lines = scaling::measure(&scaling::SIZES, gpu.as_ref(), args.verbosity.quiet)?;
     let device = gpu.as_ref().map(|gpu| gpu.info.name.as_str());
     console::print(&if args.json { console::json(&lines)? } else { scaling::table(&lines, device) })
+}
+
+/// What shadows cost the CPU.
+fn hosting(args: &Args) -> Result<(), Error> {
+    let lines = host::measure(args)?;
+    console::print(&if args.json { console::json(&lines)? } else { host::table(&lines) })
 }
 
 /// What frames cost.

@@ -143,14 +143,14 @@ impl Record {
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "{:<20}{:>9}{:>11}{:>11}{:>12}{:>8}{:>10}",
+            "{:<26}{:>9}{:>11}{:>11}{:>12}{:>8}{:>10}",
             "method", "wrong", "triangles", "vertices", "fragments", "passes", "ms"
         );
         for row in &self.methods {
             let _ = match (&row.result, &row.unavailable) {
                 (Some(r), _) => writeln!(
                     text,
-                    "{:<20}{:>9}{:>11}{:>11}{:>12}{:>8}{:>10.1}",
+                    "{:<26}{:>9}{:>11}{:>11}{:>12}{:>8}{:>10.1}",
                     row.method,
                     r.wrong_pixels,
                     r.triangles,

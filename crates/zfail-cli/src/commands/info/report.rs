@@ -51,6 +51,7 @@ pub struct InstanceReport {
     pub position: [f64; 3],
     pub mirrored: bool,
     pub casts_shadow: bool,
+    pub receives_shadow: bool,
 }
 
 /// A light.
@@ -181,6 +182,7 @@ impl InstanceReport {
             position: instance.world_from_object.translation.into(),
             mirrored: instance.world_from_object.matrix3.determinant() < 0.0,
             casts_shadow: instance.casts_shadow,
+            receives_shadow: instance.receives_shadow,
         }
     }
 }

@@ -203,7 +203,11 @@ fn all_images(images: &[ImageReport]) -> String {
 fn all_instances(instances: &[InstanceReport]) -> String {
     let mirrored = instances.iter().filter(|instance| instance.mirrored).count();
     let silent = instances.iter().filter(|instance| !instance.casts_shadow).count();
-    format!("instances: {} ({mirrored} mirrored, {silent} cast no shadow)", instances.len())
+    let exempt = match instances.iter().filter(|instance| !instance.receives_shadow).count() {
+        0 => String::new(),
+        exempt => format!(", {exempt} receive none"),
+    };
+    format!("instances: {} ({mirrored} mirrored, {silent} cast no shadow{exempt})", instances.len())
 }
 
 fn point([x, y, z]: [f64; 3]) -> String {

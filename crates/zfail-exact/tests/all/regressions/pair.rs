@@ -36,6 +36,7 @@ fn scene() -> Scene {
             mesh: 0,
             world_from_object: DAffine3::IDENTITY,
             casts_shadow: true,
+            receives_shadow: true,
         }],
         lights: vec![Light {
             name: "sun".into(),

@@ -34,6 +34,7 @@ pub fn scene(cubes: &[DVec3], lights: &[DVec3]) -> Scene {
         mesh,
         world_from_object: DAffine3::from_translation(at),
         casts_shadow: true,
+        receives_shadow: true,
     };
     let light = |&position: &DVec3| Light {
         name: String::new(),

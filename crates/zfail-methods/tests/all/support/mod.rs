@@ -77,6 +77,7 @@ pub fn plate(scene: &mut Scene, center: DVec3, half: f32) {
         mesh: scene.meshes.len(),
         world_from_object: DAffine3::from_translation(center),
         casts_shadow: true,
+        receives_shadow: true,
     });
     scene.meshes.push(Mesh {
         name: "plate".into(),

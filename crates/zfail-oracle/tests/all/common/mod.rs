@@ -57,8 +57,13 @@ pub fn soup(random: &mut Random, count: u32, radius: f64) -> Mesh {
 pub fn scene(parts: Vec<(Mesh, DAffine3)>, light: LightKind) -> Scene {
     let mut scene = Scene { materials: vec![Material::default()], ..Scene::default() };
     for (mesh, world_from_object) in parts {
-        let instance =
-            Instance { name: String::new(), mesh: scene.meshes.len(), world_from_object, casts_shadow: true };
+        let instance = Instance {
+            name: String::new(),
+            mesh: scene.meshes.len(),
+            world_from_object,
+            casts_shadow: true,
+            receives_shadow: true,
+        };
         scene.meshes.push(mesh);
         scene.instances.push(instance);
     }

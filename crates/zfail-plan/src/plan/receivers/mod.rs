@@ -18,20 +18,29 @@ use crate::view::{Projection, View};
 use glam::{DVec2, DVec3, DVec4};
 use tree::Tree;
 
-/// Boxes that are looked into for one caster of one light; of the rest, what is within is not asked.
-const LOOKS: usize = 32;
+/// Boxes that are looked into for all casters of a light together, about; of the rest, what is within is not asked.
+const LOOKS: usize = 8192;
+/// The fewest and the most for one caster.
+const FEW_OR_MANY: [usize; 2] = [8, 32];
 
 /// What one light can reach of what the view shows.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Receivers {
     tree: Tree,
-    /// By node, as far as it has been asked for.
-    visible: Vec<Visible>,
     /// Tells lights and frames apart.
     now: u64,
     /// What is visible and reached lies within `dot(xyz, p) + w >= 0` for all of these.
     planes: Vec<DVec4>,
     eye: DVec3,
+    /// Boxes that are looked into for one caster.
+    looks: usize,
+}
+
+/// Memory for looking, which belongs to one thread at a time.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Looking {
+    /// By node, as far as it has been asked for.
+    visible: Vec<Visible>,
     rest: Polyhedron,
     knife: Knife,
     /// Nodes to look at, with the number of their pixels.
@@ -43,6 +52,9 @@ pub(super) struct Receivers {
 struct Visible {
     /// For which light and frame it is known.
     known: u64,
+    /// The box, relative to the eye.
+    center: DVec3,
+    half: DVec3,
     polyhedron: Polyhedron,
     pixels: Option<Rectangle>,
 }
@@ -56,10 +68,11 @@ enum Side {
 }
 
 impl Receivers {
-    /// Takes the frame's boxes, in world space.
-    pub fn fit(&mut self, boxes: &[Bounds]) {
+    /// Takes the frame's boxes, in world space, for so many casters.
+    pub fn fit(&mut self, boxes: &[Bounds], casters: usize) {
         self.tree.fit(boxes);
-        self.visible.resize_with(self.tree.nodes.len(), Visible::default);
+        let [few, many] = FEW_OR_MANY;
+        self.looks = (LOOKS / casters.max(1)).clamp(few, many);
     }
 
     /// Prepares for a light.
@@ -73,69 +86,77 @@ impl Receivers {
 
     /// The pixels in which the shadow of a box (corners as [`Bounds::corners`] orders them) can be seen; `None` if in
     /// none. `light` is homogeneous.
-    pub fn shadowed(&mut self, view: &View, corners: &[DVec3; 8], light: DVec4) -> Option<Rectangle> {
+    pub fn shadowed(
+        &self,
+        looking: &mut Looking,
+        view: &View,
+        corners: &[DVec3; 8],
+        light: DVec4,
+    ) -> Option<Rectangle> {
         let mut planes = [DVec4::ZERO; shadow::MOST];
         let planes = shadow::planes(corners, light, &mut planes);
-        let mut waiting = std::mem::take(&mut self.waiting);
-        waiting.clear();
+        looking.visible.resize_with(self.tree.nodes.len(), Visible::default);
+        looking.waiting.clear();
         let (mut pixels, mut looks) = (None, 0);
-        self.wait(view, (!self.tree.nodes.is_empty()).then_some(0), &mut waiting);
-        while let Some((_, n)) = take_largest(&mut waiting) {
-            let Some(whole) = self.pixels(view, n) else { continue };
+        self.wait(looking, view, (!self.tree.nodes.is_empty()).then_some(0));
+        while let Some((_, n)) = take_largest(&mut looking.waiting) {
+            let Some(whole) = self.pixels(looking, view, n) else { continue };
             if pixels.is_some_and(|known| scissor::union(known, whole) == known) {
                 continue;
             }
-            let more = match (self.side(n, planes), self.tree.children(n)) {
+            let visible = &looking.visible[n as usize];
+            let more = match (visible.side(planes), self.tree.children(n)) {
                 (Side::Outside, _) => None,
                 (Side::Inside, _) => Some(whole),
-                (Side::Across, Some(children)) if looks < LOOKS => {
+                (Side::Across, Some(children)) if looks < self.looks => {
                     looks += 1;
-                    self.wait(view, children, &mut waiting);
+                    self.wait(looking, view, children);
                     continue;
                 }
                 (Side::Across, _) => {
-                    self.rest.set(&self.visible[n as usize].polyhedron);
-                    planes.iter().for_each(|&plane| self.rest.cut(plane, &mut self.knife));
-                    scissor::of_visible(view, self.rest.points())
+                    looking.rest.set(&visible.polyhedron);
+                    planes.iter().for_each(|&plane| looking.rest.cut(plane, &mut looking.knife));
+                    scissor::of_visible(view, looking.rest.points())
                 }
             };
             if let Some(more) = more {
                 pixels = Some(pixels.map_or(more, |known| scissor::union(known, more)));
             }
         }
-        self.waiting = waiting;
         pixels
     }
 
     /// Lets nodes of which anything can be seen and reached wait, with how large they are.
-    fn wait(&mut self, view: &View, nodes: impl IntoIterator<Item = u32>, waiting: &mut Vec<(u64, u32)>) {
+    fn wait(&self, looking: &mut Looking, view: &View, nodes: impl IntoIterator<Item = u32>) {
         for n in nodes {
-            if let Some([_, _, width, height]) = self.pixels(view, n) {
-                waiting.push((u64::from(width) * u64::from(height), n));
+            if let Some([_, _, width, height]) = self.pixels(looking, view, n) {
+                looking.waiting.push((u64::from(width) * u64::from(height), n));
             }
         }
     }
 
     /// The pixels of what can be seen and reached of node `n`.
-    fn pixels(&mut self, view: &View, n: u32) -> Option<Rectangle> {
-        let visible = &mut self.visible[n as usize];
+    fn pixels(&self, looking: &mut Looking, view: &View, n: u32) -> Option<Rectangle> {
+        let visible = &mut looking.visible[n as usize];
         if visible.known != self.now {
             visible.known = self.now;
             let bounds = grown(&self.tree.nodes[n as usize].bounds, self.eye);
+            (visible.center, visible.half) = (bounds.center(), bounds.half());
             visible.polyhedron.set_box(&bounds.corners());
-            self.planes.iter().for_each(|&plane| visible.polyhedron.cut(plane, &mut self.knife));
+            self.planes.iter().for_each(|&plane| visible.polyhedron.cut(plane, &mut looking.knife));
             visible.pixels = scissor::of_visible(view, visible.polyhedron.points());
         }
         visible.pixels
     }
+}
 
-    /// On which side of `planes` node `n` lies; across if in doubt.
-    fn side(&self, n: u32, planes: &[DVec4]) -> Side {
-        let bounds = grown(&self.tree.nodes[n as usize].bounds, self.eye);
-        let (center, half) = (bounds.center(), bounds.half());
+impl Visible {
+    /// On which side of `planes` the node's box lies; across if in doubt.
+    fn side(&self, planes: &[DVec4]) -> Side {
         let mut side = Side::Inside;
         for plane in planes {
-            let (height, extent) = (plane.truncate().dot(center) + plane.w, plane.truncate().abs().dot(half));
+            let normal = plane.truncate();
+            let (height, extent) = (normal.dot(self.center) + plane.w, normal.abs().dot(self.half));
             if height + extent < 0.0 {
                 return Side::Outside;
             }
@@ -226,9 +247,9 @@ mod tests {
                 (piece.max[cut % 3], other.min[cut % 3]) = (middle, middle);
                 boxes.extend([piece, other]);
             }
-            receivers.fit(&boxes);
+            receivers.fit(&boxes, 1);
             receivers.set(&view, &reach);
-            let pixels = receivers.shadowed(&view, &corners, light);
+            let pixels = receivers.shadowed(&mut Looking::default(), &view, &corners, light);
             small += usize::from(pixels.is_none_or(|[_, _, w, h]| w * h < 4800));
             for _ in 0..300 {
                 let on = center + half * DVec3::new(random(), random(), random());

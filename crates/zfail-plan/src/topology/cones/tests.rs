@@ -75,8 +75,8 @@ fn what_cones_decide_is_what_triangles_say() {
             let mut fresh = Vec::new();
             tree.look(light, &mut fresh);
             assert_eq!(states, fresh, "no memory of lights before {light}");
-            let all = edges(|emit| topology.boundary(&expected, |edge, m| emit(edge, m)));
-            let few = edges(|emit| topology.silhouette(&turned, Some(&states), |edge, m| emit(edge, m)));
+            let all = edges(|emit| topology.boundary(&expected, emit));
+            let few = edges(|emit| topology.silhouette(&turned, Some(&states), emit));
             assert_eq!(all, few, "under {light}");
             let mut looked = 0;
             tree.open_edges(&states, &topology.edges, |_| looked += 1);
@@ -87,8 +87,8 @@ fn what_cones_decide_is_what_triangles_say() {
         assert_ne!(turned, expected);
         let blind = vec![1; states.len()];
         assert_ne!(
-            edges(|emit| topology.boundary(&expected, |edge, m| emit(edge, m))),
-            edges(|emit| topology.silhouette(&expected, Some(&blind), |edge, m| emit(edge, m)))
+            edges(|emit| topology.boundary(&expected, emit)),
+            edges(|emit| topology.silhouette(&expected, Some(&blind), emit))
         );
     }
     assert!(decided > 0.7, "at most {decided} of the edges was decided by cones");

@@ -22,8 +22,9 @@ fn unless_shadowed(
     return select(radiance, vec3<f32>(0.0), ((shadowed >> i) & 1u) == 1u);
 }
 
-// From all lights that reach the instance.
-fn illumination(in: Fragment, s: Surface, eye: vec3<f32>, shadowed: u32) -> vec3<f32> {
+// From all lights that reach the instance; `verdicts` has a bit for each that is blocked.
+fn illumination(in: Fragment, s: Surface, eye: vec3<f32>, verdicts: u32) -> vec3<f32> {
+    let shadowed = select(verdicts, 0u, in.lights.z == 1u);
     var sum = vec3<f32>(0.0);
     if LIGHTS <= UNROLLED {
         if LIGHTS > 0u {

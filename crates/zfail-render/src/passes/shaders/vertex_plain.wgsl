@@ -14,7 +14,8 @@ struct Vertex {
     @location(12) normal_x: vec3<f32>,
     @location(13) normal_y: vec3<f32>,
     @location(14) normal_z: vec3<f32>,
-    @location(15) lights: vec2<u32>,
+    // Range of the lists of lights, and 1 where no shadow falls.
+    @location(15) lights: vec3<u32>,
 }
 
 struct Fragment {
@@ -23,7 +24,7 @@ struct Fragment {
     // View space, at the pixel's centre even where the triangle does not cover it: derivatives need that.
     @location(0) position: vec3<f32>,
     @location(1) @interpolate(perspective, centroid) normal: vec3<f32>,
-    @location(2) @interpolate(flat) lights: vec2<u32>,
+    @location(2) @interpolate(flat) lights: vec3<u32>,
     // As long as the normal.
     @location(3) @interpolate(perspective, centroid) tilt: f32,
 }

@@ -56,7 +56,13 @@ pub fn add(scene: &mut Scene, mut mesh: Mesh, material: Material, world_from_obj
     scene.materials.push(material);
     scene.meshes.push(mesh);
     let mesh = scene.meshes.len() - 1;
-    scene.instances.push(Instance { name: format!("instance {mesh}"), mesh, world_from_object, casts_shadow });
+    scene.instances.push(Instance {
+        name: format!("instance {mesh}"),
+        mesh,
+        world_from_object,
+        casts_shadow,
+        receives_shadow: true,
+    });
 }
 
 /// One large square in the plane z = 0.
