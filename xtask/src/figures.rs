@@ -1,8 +1,11 @@
-//! The guide's figures and table, made anew by the program: `cargo xtask figures [FILTER]`.
+//! The guide's figures and tables, made anew by the program: `cargo xtask figures [FILTER]`.
 //!
-//! In: the list below. Out: `docs/guide/figures/*.png` and `docs/guide/tables/compare.md`. Each command runs in a folder with
+//! In: the list below. Out: `docs/guide/figures/*.png` and `docs/guide/tables/compare.md`; and the tables of the last chapter,
+//! of `sections`. Each command runs in a folder with
 //! nothing but the guide's own scenes; one of the files that it leaves there is the figure. Beneath its figure the guide shows the command as it stands here, without
 //! the options that only fit the picture into the page.
+
+mod sections;
 
 use crate::program::{Program, create, example};
 use crate::root;
@@ -60,19 +63,29 @@ const FIGURES: &[Figure] = &[
     picture("stacked", "render builtin:stacked"),
     picture("stacked-stencil", "render builtin:stacked --light 0 --overlay stencil"),
     sheet("compare-stacked", "compare builtin:stacked --method everitt-kilgard,zfail"),
+    sheet("compare-stairs", "compare scenes/long-stairs.gltf --method everitt-kilgard,zfail"),
     picture("cathedral-cases", "render builtin:cathedral --camera 1 --light 0 --technique mcguire --overlay cases"),
     picture("container-pyramid", "render builtin:container --light 0 --overlay pyramid"),
     picture("stage-scissors", "render builtin:stage --light 0 --overlay scissors"),
+    picture(
+        "above-everitt-kilgard",
+        "render scenes/lamp-from-above.gltf --technique everitt-kilgard --overlay volumes,scissors",
+    ),
+    picture("above-mcguire", "render scenes/lamp-from-above.gltf --technique mcguire --overlay volumes,scissors"),
     picture("cathedral-cases-auto", "render builtin:cathedral --camera 1 --light 0 --overlay cases"),
     picture("anemone-silhouettes", "render builtin:anemone --time 1 --light 0 --overlay silhouettes"),
     picture("foliage-wireframe", "render builtin:foliage --overlay wireframe"),
     sheet("compare-all", "compare builtin:nested"),
     sheet("compare-shadow-map", "compare builtin:container --method zfail,shadow-map --shadow-map resolution=256"),
     picture("room-lights", "render builtin:room --overlay volumes-by-light"),
+    picture("room-one-light", "render builtin:room --overlay volumes --overlay-light 0"),
 ];
 
 /// The table's name for those who want it alone.
 const TABLE: &str = "compare-table";
+
+/// Those of the last chapter.
+const SECTIONS: &str = "sections";
 
 /// Of a picture as wide as the page.
 const PAGE: &str = "512x288";
@@ -80,7 +93,7 @@ const PAGE: &str = "512x288";
 const SMALL: &str = "240x135";
 
 /// The scenes on which the papers' claims are shown.
-const HARD_SCENES: [&str; 10] = [
+pub const HARD_SCENES: [&str; 10] = [
     "builtin:container",
     "builtin:nested",
     "builtin:cathedral",
@@ -99,8 +112,14 @@ const HARD_SCENES: [&str; 10] = [
 /// Names the command that failed or the file that it did not write; says so if no name contains `filter`.
 pub fn run(filter: Option<&str>) -> Result<(), String> {
     let wanted = |name: &str| filter.is_none_or(|part| name.contains(part));
-    if !FIGURES.iter().map(|figure| figure.name).chain([TABLE]).any(wanted) {
+    if !FIGURES.iter().map(|figure| figure.name).chain([TABLE, SECTIONS]).any(wanted) {
         return Err(format!("no figure has '{}' in its name", filter.unwrap_or_default()));
+    }
+    if wanted(SECTIONS) {
+        chapter()?;
+    }
+    if filter == Some(SECTIONS) {
+        return Ok(());
     }
     let program = Program::build(&[])?;
     let figures = guide().join("figures");
@@ -148,6 +167,19 @@ fn table(program: &Program) -> Result<(), String> {
     Ok(())
 }
 
+/// The tables of the last chapter.
+fn chapter() -> Result<(), String> {
+    let path = guide().join(sections::CHAPTER);
+    let read = |path: &Path| fs::read_to_string(path).map_err(|e| format!("cannot read {}: {e}", path.display()));
+    let mut text = read(&path)?;
+    for list in [sections::SECTIONS, sections::CORRECTIONS] {
+        text = list.put_into(&text, &read(&guide().join("tables").join(list.file))?)?;
+    }
+    fs::write(&path, text).map_err(|e| format!("cannot write {}: {e}", path.display()))?;
+    println!("{}", path.display());
+    Ok(())
+}
+
 /// A folder with nothing but the guide's own scenes.
 fn scratch() -> Result<PathBuf, String> {
     let folder = root().join("target").join("figures");
@@ -168,7 +200,8 @@ fn copy_files(from: &Path, to: &Path) -> Result<(), String> {
     Ok(())
 }
 
-fn guide() -> PathBuf {
+/// The folder of the guide.
+pub fn guide() -> PathBuf {
     root().join("docs").join("guide")
 }
 

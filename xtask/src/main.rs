@@ -1,11 +1,13 @@
 //! Set-up, demo and tests: `cargo xtask demo` and `cargo xtask test`; fuzzing, `cargo xtask fuzz`; the guide's figures,
-//! `cargo xtask figures`; the page of costs, `cargo xtask benchmarks`.
+//! `cargo xtask figures`; the page of costs, `cargo xtask benchmarks`; that of the papers'
+//! claims, `cargo xtask claims`.
 //!
 //! Only the standard library is used, so that the first of these commands on a new machine starts within seconds.
 
 mod benchmarks;
 mod browser;
 mod checks;
+mod claims;
 mod features;
 mod figures;
 mod fuzz;
@@ -35,6 +37,8 @@ Commands:
          Make the figures and the table of docs/guide anew, or those with NAME in their names
   benchmarks [small]
          Measure what docs/benchmarks.md tells and write it anew; 'small' tries all of it on little, into target/benchmarks
+  claims [small]
+         Measure what the papers claim and write docs/claims.md anew; 'small' tries all of it on little, into target/claims
 
 The first two install a software Vulkan driver first if the machine has no graphics adapter; 'test' also a virtual display
 and a browser, for the tests of the viewer and of pages (Debian and Ubuntu, as root).";
@@ -53,6 +57,8 @@ fn main() -> ExitCode {
         ["figures", name] => setup::graphics_adapter().and_then(|()| figures::run(Some(name))),
         ["benchmarks"] => setup::graphics_adapter().and_then(|()| benchmarks::run(false)),
         ["benchmarks", "small"] => setup::graphics_adapter().and_then(|()| benchmarks::run(true)),
+        ["claims"] => setup::graphics_adapter().and_then(|()| claims::run(false)),
+        ["claims", "small"] => setup::graphics_adapter().and_then(|()| claims::run(true)),
         ["help" | "-h" | "--help"] => {
             println!("{USAGE}");
             Ok(())

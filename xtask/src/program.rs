@@ -1,6 +1,7 @@
 //! The program and the examples beside it, built and run.
 
 use crate::cargo;
+use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -28,12 +29,12 @@ impl Program {
     }
 }
 
-/// Runs an example of the program's crate on files; what it prints.
+/// Runs an example of the program's crate; what it prints.
 ///
 /// # Errors
 /// If it fails.
-pub fn example<'a>(name: &str, files: impl IntoIterator<Item = &'a PathBuf>) -> Result<Vec<u8>, String> {
-    printed(Command::new(build(&["--example", name])?).args(files))
+pub fn example(name: &str, arguments: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Result<Vec<u8>, String> {
+    printed(Command::new(build(&["--example", name])?).args(arguments).env("NODEVICE_SELECT", "1"))
 }
 
 /// Builds one target; the path of what can be run.

@@ -4,6 +4,8 @@
 //! standard output: the page.
 
 mod page;
+#[path = "../shared/wrap.rs"]
+mod wrap;
 
 use page::{Inputs, benches};
 use std::error::Error;
@@ -12,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args_os().nth(1).map(PathBuf::from).ok_or("name the folder with the measurements")?;
-    print!("{}", read(&folder)?.page()?);
+    print!("{}", wrap::wrapped(&read(&folder)?.page()?));
     Ok(())
 }
 

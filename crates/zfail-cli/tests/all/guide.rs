@@ -43,3 +43,17 @@ fn a_pile_of_256_sheets_wraps() {
     assert!(eight_bits > 50, "{eight_bits}");
     assert_eq!(batches, 0);
 }
+
+/// McGuire et al. section 4: "every 256th stair to appear unshadowed".
+#[test]
+fn the_256th_of_many_steps_wraps() {
+    if !has_gpu() {
+        return;
+    }
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/guide/scenes/long-stairs.gltf");
+    let [eight_bits, batches] = wrong_pixels(scene, &["--light", "0"], &["everitt-kilgard", "zfail"])[..] else {
+        panic!("two rows")
+    };
+    assert!(eight_bits > 500, "{eight_bits}");
+    assert_eq!(batches, 0);
+}

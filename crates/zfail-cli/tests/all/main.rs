@@ -3,6 +3,7 @@
 mod assets;
 mod bench;
 mod benchmarks;
+mod claims;
 mod compare;
 mod compare_page;
 mod documents;
@@ -13,6 +14,7 @@ mod info;
 mod overlays;
 mod readmes;
 mod render;
+mod sections;
 mod support;
 mod usage;
 mod verify;

@@ -32,6 +32,8 @@ fn kinds_change_the_picture_in_their_own_ways() {
     assert_eq!(picture(&["--overlay", "stencil", "--overlay", "wireframe"]), both);
     assert!(!seen.contains(&both));
     assert_ne!(picture(&["--overlay", "stencil", "--light", "1"]), seen[3], "the first light chosen counts");
+    let one = picture(&["--overlay", "stencil", "--overlay-light", "1"]);
+    assert!(one != seen[3] && one != picture(&["--overlay", "stencil", "--light", "1"]), "all shine, and one is shown");
     let usual = picture(&["--overlay", "alternate"]);
     assert_ne!(picture(&["--overlay", "alternate", "--overlay-from=-60,10"]), usual);
 }

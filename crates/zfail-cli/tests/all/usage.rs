@@ -203,6 +203,7 @@ fn help_lists_every_option_of_the_contract() {
             "--ground <auto|none|HEIGHT>",
             "--overlay <KIND>",
             "--overlay-from <YAW,PITCH[,ZOOM]>",
+            "--overlay-light <N>",
         ]
     );
     let overview = zfail(folder.path(), &["--help"]).ok().stdout;

@@ -63,28 +63,8 @@ impl Inputs {
         {
             text += &format!("\n## Parts\n\n    {command}\n\n{}", benches::table(&self.benches));
         }
-        Ok(text.split("\n\n").map(wrapped).collect::<Vec<_>>().join("\n\n"))
+        Ok(text)
     }
-}
-
-/// A paragraph in lines of the width that documents here have; tables, headings and code as they are.
-fn wrapped(paragraph: &str) -> String {
-    const WIDTH: usize = 120;
-    if paragraph.starts_with(['|', '#', ' ', '\n']) {
-        return paragraph.to_owned();
-    }
-    let mut text = String::new();
-    let mut length = 0;
-    for word in paragraph.split(' ') {
-        if length > 0 {
-            let breaks = length + 1 + word.chars().count() > WIDTH;
-            text.push(if breaks { '\n' } else { ' ' });
-            length = if breaks { 0 } else { length + 1 };
-        }
-        text += word;
-        length += word.chars().count();
-    }
-    text
 }
 
 /// A table: the first column to the left, all others to the right.

@@ -4,6 +4,7 @@
 
 use super::files::PictureFile;
 use crate::error::Error;
+use crate::input;
 use crate::output::Format;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -24,6 +25,9 @@ pub struct OverlayArgs {
     #[arg(help_heading = "Figures", long, value_name = "YAW,PITCH[,ZOOM]", requires = "kinds", value_parser = parse_from)]
     #[arg(allow_hyphen_values = true)]
     pub overlay_from: Option<ThirdPerson>,
+    /// Show what this light's volumes do, whichever others shine; repeat it for several.
+    #[arg(help_heading = "Figures", long = "overlay-light", value_name = "N", requires = "kinds")]
+    pub overlay_lights: Vec<usize>,
 }
 
 impl OverlayArgs {
@@ -64,7 +68,11 @@ impl<'g> Overlays<'g> {
             return Ok(None);
         }
         let figures = Figures::new(gpu, scene)?;
-        let options = Options { lights: Some(lights.to_vec()), technique, from: args.overlay_from };
+        let lights = match &args.overlay_lights[..] {
+            [] => lights.to_vec(),
+            wanted => input::lights(scene, wanted)?,
+        };
+        let options = Options { lights: Some(lights), technique, from: args.overlay_from };
         Ok(Some(Self { gpu, figures, kinds: args.kinds.clone(), options }))
     }
 
