@@ -69,6 +69,28 @@ fn hard_scenes() {
 }
 
 #[test]
+fn methods_are_compared_on_everything_that_is_seen() {
+    if !has_gpu() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    small_scene(folder.path());
+    let args = ["small.gltf", "--size", "64x48", "--light", "1", "--method", "zfail,everitt-kilgard", "--json"];
+    let plain = compare(folder.path(), &args).ok();
+    let path = folder.path().join("small.gltf");
+    let mut file: Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
+    for node in file["nodes"].as_array_mut().unwrap() {
+        node["extras"]["receiveShadow"] = false.into();
+    }
+    fs::write(&path, file.to_string()).unwrap();
+    let exempt = compare(folder.path(), &args).ok();
+    let said = zfail(folder.path(), &[&["compare", "-o", "loud"][..], &args].concat()).ok().stderr;
+    assert!(said.contains("receive no shadow elsewhere"), "{said}");
+    let expected = [("everitt-kilgard".to_owned(), Some(0)), ("zfail".to_owned(), Some(0))];
+    assert_eq!((wrong_pixels(&plain), wrong_pixels(&exempt)), (expected.to_vec(), expected.to_vec()));
+}
+
+#[test]
 fn it_writes_a_page_a_sheet_and_the_table() {
     if !has_gpu() {
         return;

@@ -24,6 +24,7 @@ use pictures::Pictures;
 use record::Record;
 use std::path::PathBuf;
 use zfail_methods::{FiniteOptions, Method, Options, ShadowMapOptions};
+use zfail_scene::Scene;
 
 /// `zfail compare`
 #[derive(clap::Args, Debug)]
@@ -55,6 +56,17 @@ pub struct Args {
     verbosity: Verbosity,
 }
 
+/// Lets shadows fall on everything, as all methods do; what is to be said about it.
+fn let_all_receive(scene: &mut Scene) -> Vec<String> {
+    let exempt = scene.instances.iter_mut().filter(|instance| !instance.receives_shadow);
+    match exempt.map(|instance| instance.receives_shadow = true).count() {
+        0 => Vec::new(),
+        count => {
+            vec![format!("{count} of the scene's instances receive no shadow elsewhere; here they do, by every method")]
+        }
+    }
+}
+
 /// Measures and photographs, writes everything, prints the table.
 ///
 /// # Errors
@@ -62,7 +74,8 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<(), Error> {
     output::check_folder(&args.output)?;
     let quiet = args.verbosity.quiet;
-    let shot = input::shot(&args.subject, quiet)?;
+    let mut shot = input::shot(&args.subject, quiet)?;
+    console::notices(&let_all_receive(&mut shot.scene), quiet);
     if shot.lights.is_empty() {
         return Err(Error::failed(format!("{} has no light, and so no shadows to compare", args.subject.scene.scene)));
     }
