@@ -103,3 +103,32 @@ fn the_table_names_scene_techniques_and_columns() {
         zfail(folder.path(), &[&["bench", "builtin:open", "--quiet", "--technique", "auto"][..], &TINY].concat());
     assert_eq!(quiet.ok().stderr, "");
 }
+
+/// Needs no device: it measures on one that does nothing.
+#[test]
+fn the_hosts_part_has_records_of_the_contracts_shape() {
+    let folder = tempfile::tempdir().unwrap();
+    let args =
+        ["bench", "--host", "--casters", "9,20", "--lights", "1,2", "--frames", "2", "--technique", "auto,mcguire"];
+    let run = zfail(folder.path(), &[&args[..], &["--json", "--quiet"]].concat()).ok();
+    let records: Vec<Value> = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!(records.len(), 2 * 2 * 5 * 2 * 2);
+    for record in &records {
+        for times in ["prepare_ms", "encode_ms", "submit_ms"] {
+            let [min, median, max] = ["min", "median", "max"].map(|part| number(record, &format!("/{times}/{part}")));
+            assert!(0.0 < min && min <= median && median <= max, "{record}");
+        }
+        let keys = ["casters", "lights", "triangles_per_caster", "draws", "uploaded_bytes", "allocations"];
+        assert!(keys.iter().all(|key| record[key].is_u64()), "{record}");
+        assert!(["auto", "mcguire"].contains(&record["technique"].as_str().unwrap()), "{record}");
+        assert!(["scene", "each"].contains(&record["receivers"].as_str().unwrap()), "{record}");
+        // Nothing goes to the device while nothing moves, and something whenever anything does.
+        assert_eq!(record["uploaded_bytes"] == 0, record["moves"] == "nothing", "{record}");
+    }
+    let moves: Vec<&str> = records.iter().step_by(2).take(5).map(|record| record["moves"].as_str().unwrap()).collect();
+    assert_eq!(moves, ["nothing", "camera", "light", "tenth", "all"]);
+    let table = zfail(folder.path(), &[&args[..], &["--moves", "all", "--quiet"]].concat()).ok().stdout;
+    assert_eq!(table.lines().filter(|line| line.contains("mcguire")).count(), 8, "{table}");
+    let wrong = zfail(folder.path(), &["bench", "--host", "--moves", "sideways"]);
+    assert!(wrong.stderr.contains("tenth"), "{}", wrong.stderr);
+}
